@@ -160,6 +160,14 @@ def test_what_is_intended_is_held_against_what_is_computed(
         assert what in only
 
 
+def test_what_is_intended_of_an_answer_by_hand_is_named_as_not_checked(tmp_path: Path) -> None:
+    by_hand = changed("{path: /bob, item: apple, unknown: nobody can know}", "red box")
+    assert said(loaded(tmp_path, by_hand)) == []
+    text = by_hand.replace("label: ask", "label: ask\n    intended: true belief")
+    (only,) = said(loaded(tmp_path, text))
+    assert "is meant as 'true belief', which is not checked" in only
+
+
 def test_a_condition_is_held_against_its_description(tmp_path: Path) -> None:
     text = (
         ROOM + "conditions:\n  1: {description: A false belief.}\n  2: {description: True belief}\n"

@@ -73,6 +73,14 @@ def _intended(
     nest: Nest, scenario: ScenarioContent, probes: Sequence[Probe]
 ) -> Iterator[ScenarioWarning]:
     """Yield probes and conditions of which author and nest say different things."""
+    for probe in probes:
+        if probe.intended and not any(_computed([probe])):
+            yield ScenarioWarning(
+                f"{probe.where}probe {quoted(probe.label)} is meant as {quoted(probe.intended)}, "
+                "which is not checked, as no question of it has a computed right answer; write "
+                "`right: {path: ..., item: ...}`",
+                f"unchecked {probe.where}",
+            )
     kinds: list[tuple[Probe, str]] = []
     for probe, question in _computed(probes):
         kind = _kind_of(nest, probe, question)
