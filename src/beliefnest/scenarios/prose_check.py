@@ -60,9 +60,9 @@ def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
 def _faults(nest: Nest, story: str, question: Answers, believed: Believed) -> Iterator[str]:
     right = {_key(each) for each in question.right}
     if believed.kind == "block":
-        told = listed(sorted(map(repr, question.right)), "or")
+        answer = listed(sorted(map(repr, question.right)), "or")
         yield (
-            f"it is not checked that the right answer {told} follows from the story, which does "
+            f"it is not checked that the right answer {answer} follows from the story, which does "
             "not tell who sees a block; read the story, or ask about an item"
         )
         return
