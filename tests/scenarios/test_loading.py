@@ -286,6 +286,14 @@ def test_a_fault_of_a_probe_is_told_in_the_words_of_files(
     assert str(caught.value).startswith(place), caught.value
 
 
+@pytest.mark.parametrize("containers", ["box", "[box, 3, {label: [1]}]", "{label: box}", "null"])
+def test_a_file_with_several_faults_is_told_of_one(tmp_path: Path, containers: str) -> None:
+    goal = "episode: {goal: {reach: [{container: box, items: {diamond: 1}}]}}\n"
+    text = f"{goal}name: small\ncontainers: {containers}\nplaces: box\n"
+    with pytest.raises(ScenarioError, match="expected a "):
+        Scenario.load(write(tmp_path, text))
+
+
 def test_a_fault_in_a_condition_is_named_where_the_condition_is_written(tmp_path: Path) -> None:
     file = write(tmp_path, BASE.replace("[5.5, 1, 6.5]", "[2.5, 1, 2.5]"))
     Scenario.load(file, 1)

@@ -126,10 +126,14 @@ def _fault(document: Document, error: str, form: _Form) -> ScenarioError:
 
 def _standing(root: YamlNode, name: object) -> str:
     """Return where the container or place with a name is, for a message; empty: there is none."""
+    # The file may have other faults.
     form: Any = plain(root)
-    labelled = {each.get("label"): each.get("at") for each in form.get("containers", ())}
-    named = isinstance(name, str) and {**labelled, **form.get("places", {})}.get(name)
-    return f"; {quoted(name)} is at {named}" if named else ""
+    containers, places = form.get("containers"), form.get("places")
+    known = [*places.items()] if isinstance(places, dict) else []
+    for each in containers if isinstance(containers, list) else ():
+        known += [(each.get("label"), each.get("at"))] if isinstance(each, dict) else []
+    at = next((at for label, at in known if label == name), None)
+    return f"; {quoted(name)} is at {at}" if at and isinstance(name, str) else ""
 
 
 def _found(value: object, what: str) -> str:
