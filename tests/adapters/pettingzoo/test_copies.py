@@ -8,7 +8,6 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Any
 
-import msgspec
 import numpy as np
 import pytest
 from tests.profiles import few_by_day
@@ -92,8 +91,6 @@ def test_a_pickle_names_nothing_that_is_to_be_looked_for_in_every_module() -> No
     with closing(hall("task")) as env:
         names = [arg for _, arg, _ in pickletools.genops(pickle.dumps(env, 4)) if arg == "UNSET"]
         assert names == []
-    assert pickle.loads(pickle.dumps(msgspec.UNSET)) is msgspec.UNSET
-    assert copy.deepcopy(msgspec.UNSET) is msgspec.UNSET
 
 
 def test_an_episode_that_is_over_is_over_after_restore_too() -> None:

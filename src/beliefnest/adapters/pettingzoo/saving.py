@@ -1,26 +1,14 @@
 """Episodes as values: the seed and what was chosen, from which the same episode comes again."""
 
-import copyreg
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
-
-import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.skills.calls import Call
 
 _OF_TESTS = "options"
 """Name of the option that PettingZoo's own tests give to every environment."""
-
-
-def _unset() -> msgspec.UnsetType:
-    return msgspec.UNSET
-
-
-# By itself it is pickled as a name that is looked for in every module, and SuperSuit, which puts
-# environments into processes, raises ImportError for names that it does not have.
-copyreg.pickle(msgspec.UnsetType, lambda _: (_unset, ()))
 
 
 @dataclass(frozen=True, slots=True)
