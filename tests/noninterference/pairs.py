@@ -11,7 +11,7 @@ import functools
 import random
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import beliefnest as bn
@@ -120,8 +120,10 @@ def pair_of(seed: int) -> Pair:
         _side(chance, _EAST, {"carl": (8.5, 1, 3.5), "dora": (12.5, 1, 1.5)}, most=6)
         for _ in range(2)
     )
-    things = dict(west.blocks)
-    seen = tuple(_seen(chance, things) for _ in range(chance.randint(3, 9)))
+    if not meet:
+        first, second = _doubled(chance, first), _doubled(chance, second)
+    things, far = dict(west.blocks), [*first.blocks, *second.blocks]
+    seen = tuple(_seen(chance, things, far) for _ in range(chance.randint(3, 9)))
     unseen = tuple(
         tuple(_unseen(chance, side, meet=meet) for _ in seen) for side in (first, second)
     )
@@ -238,6 +240,17 @@ def _side(
     )
 
 
+def _doubled(chance: random.Random, side: Side) -> Side:
+    """Return an eastern room in which some chests are left halves of double chests."""
+    halves: dict[Position, str] = {}
+    for (x, y, z), block in side.blocks.items():
+        if block == "chest" and x + 1 < _EAST[-1][0] and chance.random() < 0.7:
+            halves[x, y, z] = "chest[facing=north,type=left]"
+            halves[x + 1, y, z] = "chest[facing=north,type=right]"
+    contents = {at: held for at, held in side.contents.items() if at not in halves}
+    return replace(side, blocks={**side.blocks, **halves}, contents=contents)
+
+
 def _items(chance: random.Random) -> dict[str, int]:
     return {name: chance.randint(1, 2) for name in _ITEMS if chance.random() < 0.4}
 
@@ -252,12 +265,14 @@ def _has_one(west: Side, first: Side, second: Side, item: str) -> bool:
     return max(counts) <= 1
 
 
-def _seen(chance: random.Random, things: dict[Position, str]) -> tuple[Act, ...]:
+def _seen(
+    chance: random.Random, things: dict[Position, str], far: list[Position]
+) -> tuple[Act, ...]:
     """Return the acts of one tick in the western room; follow its blocks."""
     if chance.random() < 0.25:
         return ()
     who = chance.choice(("ann", "bob"))
-    act = _act(chance, who, list(things), _PLACES["west"], _WEST)
+    act = _act(chance, who, list(things), _PLACES["west"], _WEST, far)
     if act[0] == "set_block" or act[0] == "put":
         things.setdefault(act[1] if act[0] == "set_block" else act[3], "chest")
     return (act,)
@@ -274,7 +289,7 @@ def _unseen(chance: random.Random, side: Side, *, meet: bool) -> tuple[Act, ...]
     acts = []
     for _ in range(chance.randint(0, 2)):
         who = chance.choice(("carl", "dora"))
-        acts.append(_act(chance, who, list(side.blocks), _PLACES["east"], _EAST))
+        acts.append(_act(chance, who, list(side.blocks), _PLACES["east"], _EAST, _WEST))
     kept = {"place_agent", "arrive", "say", "think", "whisper", "open", "set_block", "use_lever"}
     return tuple(each for each in acts if not meet or each[0] in kept)
 
@@ -285,14 +300,24 @@ def _act(
     things: list[Position],
     spots: list[Position],
     cells: list[Position],
+    far: list[Position],
 ) -> Act:
-    """Return one act of an agent in a room; it may turn out to be impossible."""
+    """Return one act of an agent in a room; it may turn out to be impossible.
+
+    Args:
+        chance: Random numbers.
+        who: The agent.
+        things: Cells of the room that have or had a thing.
+        spots: Floor on which the agent may stand.
+        cells: Cells of the room that things may be put into.
+        far: Cells behind the wall about which it may speak.
+    """
     x, y, z = chance.choice(spots)
     feet = (x + 0.5, float(y), z + 0.5)
     at = chance.choice(things or cells)
     item = {chance.choice(_ITEMS): 1}
     other = {"ann": "bob", "bob": "ann", "carl": "dora", "dora": "carl"}[who]
-    claim = bn.Claim.located("apple", at)
+    claim = bn.Claim.located("apple", chance.choice(far or [at]))
     acts: list[Callable[[], Act]] = [
         lambda: ("place_agent", who, feet),
         lambda: ("place_agent", who, feet),
