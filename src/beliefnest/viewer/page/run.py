@@ -223,9 +223,8 @@ class RunData:
         line.entries = line.info.entries
         recorder = line.recorders[0]
         for number, claim, kind in recorder.claims[line.claims :]:
-            where = labels.get(claim.cell)
-            said = str(claim) if where is None else claim.about(f"the {where}")
-            line.events[number].setdefault("claims", []).append([said, kind])
+            # Without labels: whoever heard the claim need not know them.
+            line.events[number].setdefault("claims", []).append([str(claim), kind])
         line.claims = len(recorder.claims)
 
 
