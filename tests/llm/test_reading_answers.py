@@ -371,6 +371,8 @@ AMBIGUOUS = (
     "Answer: **A** (if he did not see it) / **B** (if he did)",
     "In the red box, provided that she left; otherwise in the blue box.",
     "A... or is it the blue box?",
+    "Answer: A, except when he saw it, then B",
+    "Answer: A, provided he did not see it, else B",
 )
 UNREAD = (
     "<think>B",

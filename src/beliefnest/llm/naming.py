@@ -91,7 +91,7 @@ _LABEL_AFTER = _ABROAD | _words(
     "perhaps also otherwise sometimes then though although unless if can could might may too"
 )
 _HEDGES = _ABROAD | _words(
-    "maybe perhaps possibly alternatively otherwise might could may sometimes second runner"
+    "maybe perhaps possibly alternatively otherwise else might could may sometimes second runner"
 )
 """Words that name an alternative, also in brackets and after `although`."""
 _CONCESSIONS = _words(

@@ -269,9 +269,9 @@ class _Reader:
         whole.no |= named.no - whole.yes
         if number in named.no:
             whole.unsure.add(number)
-        alternative = re.search(r"\b(?:or|and|/)\s+", first)
+        alternative = re.search(r"\b(?:or|and|/)\s+", first) or re.search(r",\s*then\b", head[0])
         if alternative:
-            whole.yes |= named.yes
+            whole.yes |= named.yes | named.unsure
         return whole
 
     def _reconsidered(
