@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from beliefnest.errors import ModelError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.llm import (
     Connection,
     Message,
@@ -205,7 +205,7 @@ def test_a_recording_replays_and_holds_no_key(fake, clock, tmp_path):
 
 def test_a_recording_that_was_cut_off_names_the_line(tmp_path):
     (tmp_path / "r.jsonl").write_text('{"model":')
-    with pytest.raises(ModelError, match=r"r\.jsonl, line 1"):
+    with pytest.raises(InputError, match=r"r\.jsonl, line 1"):
         resolve_model(f"replay:{tmp_path / 'r.jsonl'}", {})
 
 
@@ -223,7 +223,7 @@ def test_a_script_gives_its_answers_in_order(tmp_path):
 def test_a_script_of_another_form_is_refused(tmp_path, content):
     path = tmp_path / "script.json"
     path.write_text(content)
-    with pytest.raises(ModelError, match="not a JSON list of answers"):
+    with pytest.raises(InputError, match="not a JSON list of answers"):
         resolve_model(f"scripted:{path}", {})
 
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import at_night
 
-from beliefnest.errors import ModelError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.llm import Answer, AnswerLimits, Connection, Sampling, open_model, resolve_model
 from beliefnest.llm.messages import Message
 
@@ -168,7 +168,7 @@ def test_an_unreadable_answer_counts_against_the_run(fake, clock):
 def test_files_of_answers_are_refused_in_one_line(tmp_path, kind, content):
     path = tmp_path / "answers.json"
     path.write_bytes(content or b"\n")
-    with pytest.raises(ModelError, match=r"answers\.json") as fault:
+    with pytest.raises(InputError, match=r"answers\.json") as fault:
         resolve_model(f"{kind}:{path}", {})
     assert one_line(fault.value)
 
