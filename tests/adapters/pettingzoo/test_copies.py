@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.profiles import few_by_day
+from tests.profiles import at_night, few_by_day
 
 import beliefnest as bn
 from beliefnest.env import parallel_env, vector_env
@@ -61,7 +61,7 @@ COPIES: dict[str, Callable[[Any], Any]] = {
 
 
 @pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("cut", few_by_day(range(100), 2))
+@pytest.mark.parametrize("cut", few_by_day(range(at_night(100, 4)), 2))
 def test_what_follows_a_cut_is_the_same_in_copies_and_after_restore(cut: int, form: str) -> None:
     chance = random.Random(f"{form} {cut}")
     with closing(hall(form)) as env:
