@@ -85,13 +85,16 @@ def one_line(error):
     return text.isprintable() and len(text) < 1000 and "sk-secret" not in text
 
 
+DEEP = 1_000_000
+"""Lists in lists; Python 3.14 reads 50,000 of them."""
+
 NONSENSE = {
     "null": [b"null"],
     "a number": [b"7"],
     "a list": [b"[]"],
     "brackets": [b"[" * 200_000],
     "braces": [b'{"a":' * 200_000],
-    "deep content": [json.dumps(chunk()).replace('"go();"', "[" * 50_000 + "]" * 50_000).encode()],
+    "deep content": [json.dumps(chunk()).replace('"go();"', "[" * DEEP + "]" * DEEP).encode()],
     "half an emoji": [delta(content="go('\ud83d');")],
     "6,000 digits": [json.dumps(counted()).replace("12", "1" * 6000).encode()],
     "usage in a list": [chunk(), chunk(usage=[1])],
