@@ -85,7 +85,7 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
             else:
                 found = reproduce_study(folder, again, jobs, told, trust=trust)
         differences = [*damaged, *found.differences]
-    other = _other_versions(result.plan["versions"])
+        other = _other_versions(result.plan["versions"])
     lines = _lines(found, differences, other)
     print_report(_report(found, differences, other), lines, as_json=as_json)
     return 1 if differences else 0
