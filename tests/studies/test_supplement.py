@@ -56,7 +56,7 @@ def unpacked(recorded, tmp_path):
 def test_equal_bytes_of_a_supplement_that_is_played_again_elsewhere(recorded, unpacked, tmp_path):
     bn.StudyResult.read(recorded).bundle(tmp_path / "again.zip")
     assert (tmp_path / "again.zip").read_bytes() == (tmp_path / "s.zip").read_bytes()
-    command = [sys.executable, "-m", "beliefnest", "reproduce", ".", "--json"]
+    command = [sys.executable, "-m", "beliefnest", "reproduce", "../s.zip", "--json"]
     done = subprocess.run(command, cwd=unpacked, capture_output=True, text=True, check=True)
     told = json.loads(done.stdout)
     assert (told["equal"], told["cells"], told["rows"]) == (True, 4, 4)
