@@ -1,9 +1,13 @@
 """Behaviour of all journals, in memory and in files."""
 
+import gc
+import sqlite3
+
 import pytest
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
+from beliefnest.timeline.database import Database
 from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineInfo, TimelineKey, is_found
 from beliefnest.world.frames import Frame
 
@@ -339,3 +343,12 @@ def test_a_long_record_that_is_deleted_while_it_is_read_ends_with_an_error(journ
         list(reading)
     journal.create(MAIN, None, 0)
     assert list(journal.entries(MAIN, 0, 10)) == []
+
+
+def test_a_journal_without_a_file_that_nobody_closes_ends_with_its_object():
+    database = Database.temporary(["CREATE TABLE a (b)"])
+    connection = database._connection
+    del database
+    gc.collect()
+    with pytest.raises(sqlite3.ProgrammingError, match="closed"):
+        connection.execute("SELECT * FROM a")

@@ -8,6 +8,7 @@ time.
 import ctypes
 import os
 import sqlite3
+import weakref
 import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import closing, contextmanager, suppress
@@ -165,6 +166,8 @@ class Database(Owned):
         """
         connection = sqlite3.connect("", isolation_level=None, check_same_thread=False)
         database = cls(connection, Path("temporary run file"), None)
+        # From Python 3.13 on, a connection that is collected while it is open warns.
+        weakref.finalize(database, connection.close).atexit = False
         database.writable = True
         for statement in statements:
             database.execute(statement)
