@@ -178,7 +178,7 @@ def test_copies_have_masks_for_each_row_and_go_on_alike() -> None:
             assert repr(env.step({"bob": np.int64(0)})) == repr(other.step({"bob": np.int64(0)}))
 
 
-@pytest.mark.parametrize("action", [-1, 10**6, "x", None, {}, float("inf"), 10**30])
+@pytest.mark.parametrize("action", [-1, 10**6, 1.5, "x", None, {}, float("inf"), 10**30])
 def test_numbers_that_do_not_exist_are_refused_in_one_line(action: Any) -> None:
     with closing(room(agents=["ann"])) as env:
         env.reset(seed=0)

@@ -1,5 +1,6 @@
 """Actions in a structured space, which stand for calls of skills."""
 
+import operator
 from collections.abc import Mapping
 from typing import Any
 
@@ -195,15 +196,15 @@ class Calls:
 
     def _position(self, index: Any) -> Position:
         low, shape = self._bounds.box.low, self._bounds.box.shape
-        x, y, z = (int(value) for value in index)
+        x, y, z = map(operator.index, index)
         if not all(0 <= value < size for value, size in zip((x, y, z), shape, strict=True)):
             raise IndexError(f"position {(x, y, z)} of {shape}")
         return (low[0] + x, low[1] + y, low[2] + z)
 
 
 def index_of(value: Any) -> int:
-    """Return a number as an index; raises IndexError below 0, and what `int` raises."""
-    number = int(value)
+    """Return a whole number as an index; raises IndexError below 0, and TypeError for others."""
+    number = operator.index(value)
     if number < 0:
         raise IndexError(f"{number} is below 0")
     return number
