@@ -62,6 +62,12 @@ def test_the_key_retry_unread_asks_again_and_is_recorded(server, tmp_path):
         study(tmp_path, retry_unread=-1)
 
 
+def test_who_read_claims_stands_in_methods(server, tmp_path):
+    server.will(FakeOpenAI.says(LEFT))
+    result = study(tmp_path, claims_from="offline").run(tmp_path / "out", jobs=1)
+    assert "with claims read out of what agents said by `offline`" in result.methods()
+
+
 def test_rate_limits_are_waited_for(server, tmp_path):
     server.will(FakeOpenAI.fails(429, headers=[("retry-after", "0")]), FakeOpenAI.says(LEFT))
     result = study(tmp_path).run(tmp_path / "out", jobs=1)

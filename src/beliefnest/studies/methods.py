@@ -295,6 +295,8 @@ def _asking(plan: Mapping[str, Any], rows: Sequence[Row]) -> str:
         parts.append("a system message of our own")
     if "skills" in plan:
         parts.append(f"and skills listed with the detail {_code(plan['skills'])}")
+    if plan.get("claims_from"):
+        parts.append(f"with claims read out of what agents said by {_code(plan['claims_from'])}")
     return ", ".join(parts)
 
 
