@@ -4,8 +4,8 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 
+from beliefnest.minds.imagining.histories import Imagined
 from beliefnest.minds.mind_model import MindModel
-from beliefnest.nest.face.histories import Imagined
 from beliefnest.nest.face.nest import Nest
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest_benchmarks.figures import Metric

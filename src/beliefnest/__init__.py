@@ -33,14 +33,14 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
         UnknownNameError,
         WorldError,
     )
+    from beliefnest.minds.imagining.histories import History, Imagined
+    from beliefnest.minds.imagining.imagining import ImaginationWarning
     from beliefnest.minds.inference import Inference
     from beliefnest.minds.mind_model import MindModel, simplex_grid
     from beliefnest.nest.explain.comparison import Difference, Pose
     from beliefnest.nest.explain.explanation import Explanation
     from beliefnest.nest.explain.parts import Contents
     from beliefnest.nest.face.exploration import Attempt
-    from beliefnest.nest.face.histories import History, Imagined
-    from beliefnest.nest.face.imagining import ImaginationWarning
     from beliefnest.nest.face.nest import Nest
     from beliefnest.nest.face.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
@@ -114,9 +114,9 @@ _HOMES = {
     "Difference": "beliefnest.nest.explain.comparison",
     "Episode": "beliefnest.episodes.episode",
     "Explanation": "beliefnest.nest.explain.explanation",
-    "History": "beliefnest.nest.face.histories",
-    "ImaginationWarning": "beliefnest.nest.face.imagining",
-    "Imagined": "beliefnest.nest.face.histories",
+    "History": "beliefnest.minds.imagining.histories",
+    "ImaginationWarning": "beliefnest.minds.imagining.imagining",
+    "Imagined": "beliefnest.minds.imagining.histories",
     "Inference": "beliefnest.minds.inference",
     "InitialBelief": "beliefnest.belief.grounds",
     "MindModel": "beliefnest.minds.mind_model",

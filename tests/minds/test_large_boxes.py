@@ -9,8 +9,7 @@ import pytest
 
 import beliefnest as bn
 import beliefnest_benchmarks
-from beliefnest.minds import surroundings
-from beliefnest.nest.inferring import node_inference
+from beliefnest.minds import node_inference, surroundings
 from beliefnest.world import terrain
 from beliefnest.world.memory import MemoryLimit
 

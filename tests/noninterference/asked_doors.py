@@ -13,7 +13,7 @@ from beliefnest.episodes.decided import Ended
 from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.messages import Answer, Message, Sampling
 from beliefnest.llm.model_settings import ModelSettings
-from beliefnest.nest.face.imagining import ImaginationWarning
+from beliefnest.minds.imagining.imagining import ImaginationWarning
 from beliefnest.prompts import built_in_template
 from beliefnest.scenarios.believed import Believed
 from beliefnest.scenarios.content import Probe

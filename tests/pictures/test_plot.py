@@ -11,7 +11,7 @@ from beliefnest.pictures.plot import Band, NotedClaim, PlotRow, belief_plot
 from beliefnest.pictures.time_axis import NotedAct
 
 CHEST = (3, 1, 3)
-PLOT = "beliefnest.nest.face.plotting.belief_plot"
+PLOT = "beliefnest.viewer.figures.plotting.belief_plot"
 LONG = ("abcdefghijklmnop", "qrstuvwxyzabcdef")
 
 

@@ -8,7 +8,6 @@ from beliefnest.belief.grounds import told_text
 from beliefnest.belief.view import State
 from beliefnest.facts.states import StateFacts
 from beliefnest.nest.explain.comparison import false_things
-from beliefnest.nest.face.drawing import wrong_things
 from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.overview import Card, ConditionPicture, Note
 from beliefnest.pictures.palette import Mark
@@ -21,6 +20,7 @@ from beliefnest.scenarios.naming import container_name, named_place
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import Journal
+from beliefnest.viewer.figures.drawing import wrong_things
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.words import listed, titled, with_the

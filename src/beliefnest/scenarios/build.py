@@ -8,6 +8,7 @@ from typing import Any
 
 from beliefnest.belief.grounds import InitialBelief
 from beliefnest.facts.reading import check_entry
+from beliefnest.importing import part
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.unique import unique_fault, unique_items
 from beliefnest.perception.options import Perception
@@ -28,7 +29,7 @@ from beliefnest.scenarios.format import (
     ScenarioFile,
     StepEntry,
 )
-from beliefnest.scenarios.inferring import build_inferring
+from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, rule_faults
 from beliefnest.scenarios.scene_check import scene_warnings
 from beliefnest.scenarios.space import (
@@ -213,7 +214,8 @@ class _Builder:
                 raise self._document.fault(
                     (*path, key), "is for probes that ask a model; remove it, or 'infer'"
                 )
-        infer = build_inferring(self._document, (*path, "infer"), entry.infer, self._snapshot)
+        place = (*path, "infer")
+        infer: Inferring = part("infer_entry")(self._document, place, entry.infer, self._snapshot)
         expect: tuple[Infers, ...] = ()
         if entry.expect is not None:
             place = (*path, "expect")

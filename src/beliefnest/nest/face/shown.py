@@ -2,7 +2,6 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -32,12 +31,12 @@ from beliefnest.timeline.journal import FOLLOW, TimelineKey
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Placements, Position
-from beliefnest.world.words import counted, nearest_or_all, point_words
+from beliefnest.world.words import nearest_or_all, point_words
 
 if TYPE_CHECKING:  # Modules for drawing and inference take long to import, and few nests use them.
+    from beliefnest.minds.imagining.histories import Imagined
     from beliefnest.minds.inference import Inference
     from beliefnest.minds.mind_model import MindModel
-    from beliefnest.nest.face.histories import Imagined
     from beliefnest.pictures.figure import Figure
     from beliefnest.pictures.scene import Scene
 
@@ -221,11 +220,10 @@ class ShownSimulator(ABC):
             PathError: There is no such agent.
             TickError: A tick is in the future or before the start.
         """
-        from beliefnest.nest.inferring.node_inference import infer_in
-
         last = self._tick if until is None else tick_of(until)
-        recording, path = self._recording, self._path
-        return infer_in(recording, path, model, tick_of(since), last, ended=ended, smooth=smooth)
+        asked = (self._recording, self._path, model, tick_of(since), last)
+        inference: Inference = part("infer")(*asked, ended=ended, smooth=smooth)
+        return inference
 
     @in_turn
     def imagine(
@@ -272,10 +270,9 @@ class ShownSimulator(ABC):
         """
         last = self._tick if until is None else until
         asked = (since, last, actors, n, seed, weights, evidence, tolerance)
+        faces = (PastSimulator, self._live_on)
         imagine_in = part("imagine")
-        imagined: Imagined = imagine_in(
-            self._recording, self._path, asked, (PastSimulator, self._live_on), on_progress
-        )
+        imagined: Imagined = imagine_in(self._recording, self._path, asked, faces, on_progress)
         return imagined
 
     def _live_on(self, recording: Recording) -> Any:
@@ -315,15 +312,10 @@ class ShownSimulator(ABC):
         Raises:
             InputError, PathError, TickError: As for `infer`.
         """
-        from beliefnest.minds.mind_model import MindModel
-        from beliefnest.nest.inferring.node_inference import credence_in
-
-        rows: Any = None if initial is None else [initial]
-        model = MindModel(
-            agent, {"any": {"at": (0, 0, 0)}}, {"any": 0}, doubt, rows, actual, lapse=lapse
-        )
         last = self._tick if tick is None else tick_of(tick)
-        return credence_in(self._recording, self._path, model, tick_of(since), last)
+        asked = (self._recording, self._path, agent, doubt, initial, actual, lapse)
+        credence: dict[str, float] = part("credence")(*asked, tick_of(since), last)
+        return credence
 
     @property
     @in_turn
@@ -370,8 +362,9 @@ class ShownSimulator(ABC):
     ) -> "Figure":
         """Return a drawing of the simulator's state; see `Nest.figure`."""
         with self._recording.turn:
-            scenes = _scenes(self._recording, [self], against, sight, height)
-            return _figure(scenes, inference, steps, self._tick)
+            scenes = part("scenes")(self._recording, [self], against, sight, height)
+            figure: Figure = part("figure")(scenes, inference, steps, self._tick)
+            return figure
 
     def __repr__(self) -> str:
         recording = self._recording
@@ -379,7 +372,7 @@ class ShownSimulator(ABC):
             with recording.turn:
                 key = recording.selected.get(self._path)
                 state = self.state
-                wrong = [_named(each, recording) for each in self._otherwise(())]
+                wrong = [_named(each, recording) for each in self.otherwise(())]
                 words = state_words(state)
         except BeliefNestError as error:
             # As in `ShownNest.__repr__`.
@@ -391,19 +384,7 @@ class ShownSimulator(ABC):
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
 
-    def scene(self, against: BeliefPath, sight: Sequence[str] | None, height: int) -> "Scene":
-        """Return the scene that `figure` draws."""
-        from beliefnest.nest.face.drawing import scene_of
-
-        path, state = self._path, self.state
-        # An agent that is not perceived now is drawn at a remembered place. What it sees now is
-        # unknown, so its sight is not drawn.
-        own = [name for name in path[-1:] if state.agents[name].current]
-        seen = {name: self.visible_blocks(name) for name in (own if sight is None else sight)}
-        otherwise = self._otherwise(against)
-        return scene_of(self._recording, path, state, otherwise, against, seen, height)
-
-    def _otherwise(self, against: BeliefPath) -> Sequence[Difference]:
+    def otherwise(self, against: BeliefPath) -> Sequence[Difference]:
         """Return the false beliefs of this simulator (`b`) against another (`a`).
 
         The other one is read at this tick, or at its latest one if that is earlier.
@@ -482,7 +463,9 @@ class ShownNest:
             InputError: There is no path, the height lies outside the box, or steps is below 1.
         """
         scenes = self.scenes(paths, tick, against, sight=sight, height=height)
-        return _figure(scenes, inference, steps, self._tick if tick is None else tick)
+        then = self._tick if tick is None else tick
+        figure: Figure = part("figure")(scenes, inference, steps, then)
+        return figure
 
     def scenes(
         self,
@@ -500,7 +483,8 @@ class ShownNest:
         with recording.turn:
             names = [parse_path(path, recording.agents) for path in wanted]
             shown = [PastSimulator(recording, path, then) for path in names]
-            return _scenes(recording, shown, against, sight, height)
+            scenes: tuple[Scene, ...] = part("scenes")(recording, shown, against, sight, height)
+            return scenes
 
     @in_turn
     def plot_beliefs(
@@ -535,10 +519,9 @@ class ShownNest:
                 was a container at the position.
             UnknownNameError: There is no such item.
         """
-        from beliefnest.nest.face.plotting import matter_of, plot_of
-
-        matter = matter_of(self._recording, container, item, agent, block)
-        return plot_of(self._recording, matter, paths, self._tick)
+        followed = (container, item, agent, block)
+        figure: Figure = part("plot")(self._recording, followed, paths, self._tick)
+        return figure
 
     @in_turn
     def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
@@ -610,48 +593,6 @@ class Past(ShownNest):
     def __getitem__(self, path: str) -> PastSimulator:
         """Return the simulator of a belief path as it was."""
         return PastSimulator(self._recording, parse_path(path, self._recording.agents), self._tick)
-
-
-def _figure(
-    scenes: "tuple[Scene, ...]", inference: "Inference | None", steps: int, tick: int | None
-) -> "Figure":
-    """Return a figure of scenes, with a posterior at their tick or, before that, at its last."""
-    from beliefnest.pictures.figure import figure_of
-
-    if inference is None:
-        return figure_of(scenes)
-    from beliefnest.minds.charts import bars_of, heat_of
-
-    then = None if tick is None or tick >= inference.until else tick
-    heat = heat_of(inference, steps, then)
-    actions = counted(steps, "action")
-    words = f"where {inference.model.agent} will be after {actions}"
-    tinted = [replace(scene, heat=heat, heat_words=words) for scene in scenes]
-    return figure_of(tinted, bars_of(inference, then))
-
-
-def _scenes(
-    recording: Recording,
-    shown: Sequence[ShownSimulator],
-    against: str | None,
-    sight: Sequence[str] | None,
-    height: int | None,
-) -> "tuple[Scene, ...]":
-    from beliefnest.pictures.scene import best_height
-
-    if not shown:
-        raise InputError("a figure needs at least one simulator; give a belief path")
-    other = parse_path("/" if against is None else against, recording.agents)
-    for name in sight or ():
-        parse_path(path_text((name,)), recording.agents)
-    low, high = recording.box.low[1], recording.box.high[1]
-    if height is not None and not low <= height <= high:
-        raise InputError(
-            f"height {height} lies outside the box; give a height from {low} to {high}"
-        )
-    # Draw the same storey of all simulators, so that they can be compared.
-    level = best_height([each.state for each in shown]) if height is None else height
-    return tuple(each.scene(other, sight, level) for each in shown)
 
 
 def _named(wrong: Difference, recording: Recording) -> str:

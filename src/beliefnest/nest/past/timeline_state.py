@@ -9,6 +9,7 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis
 from beliefnest.belief.node_view import NodeView, Part
+from beliefnest.importing import part
 from beliefnest.nest.past.shown_words import state_words
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import BlockGrid
@@ -198,8 +199,5 @@ class TimelineState(NodeView):
         return f"<state of {path_text(self.path)} at tick {self.tick}: {state_words(self)}>"
 
     def _repr_html_(self) -> str:
-        # Imported here because drawing takes long to import, and few states are drawn.
-        from beliefnest.pictures.figure import figure_of
-        from beliefnest.pictures.scene import read_scene
-
-        return figure_of([read_scene(self)])._repr_html_()
+        text: str = part("state_figure")(self)._repr_html_()
+        return text

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from math import comb, prod
 from typing import Literal
 
-from beliefnest.scenarios.inferring import MOST_HYPOTHESES
+from beliefnest.minds.infer_entries import MOST_HYPOTHESES
 
 FilmCell = tuple[int, int]
 """Coordinates x, y from 1, y upwards."""

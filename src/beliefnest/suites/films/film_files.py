@@ -12,7 +12,7 @@ import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
-from beliefnest.scenarios.inferring import MOST_HYPOTHESES
+from beliefnest.minds.infer_entries import MOST_HYPOTHESES
 from beliefnest.suites.films.film import (
     NOTHING,
     Film,

@@ -7,15 +7,15 @@ from typing import Any
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.errors import InputError
-from beliefnest.nest.acting.course_agreement import Agreement, Tolerance, Witness
-from beliefnest.nest.acting.courses import Candidate, CoursePlan
-from beliefnest.nest.acting.particles import Drawn, HistoryDraws, spread
+from beliefnest.minds.imagining.course_agreement import Agreement, Tolerance, Witness
+from beliefnest.minds.imagining.courses import Candidate, CoursePlan
+from beliefnest.minds.imagining.histories import Faces, Imagined, weigh
+from beliefnest.minds.imagining.history_candidates import Candidates, HistoryPolicies
+from beliefnest.minds.imagining.history_starts import HistoryStarts
+from beliefnest.minds.imagining.imagine_arguments import Asked, Checked
+from beliefnest.minds.imagining.particles import Drawn, HistoryDraws, spread
 from beliefnest.nest.acting.script import OnProgress
 from beliefnest.nest.acting.starting import start_of
-from beliefnest.nest.face.histories import Faces, Imagined, weigh
-from beliefnest.nest.face.history_candidates import Candidates, HistoryPolicies
-from beliefnest.nest.face.history_starts import HistoryStarts
-from beliefnest.nest.face.imagine_arguments import Asked, Checked
 from beliefnest.nest.past.percepts import Percept, percepts_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint

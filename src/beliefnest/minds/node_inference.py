@@ -1,21 +1,23 @@
 """Inference on one node: read its timeline, run the filter, return the result."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from beliefnest.errors import InputError, TickError, TooLargeError
 from beliefnest.minds.evidence import EvidenceMoment
 from beliefnest.minds.hypotheses import Hypotheses
 from beliefnest.minds.inference import Inference, reported_credence
 from beliefnest.minds.mind_model import MindModel
+from beliefnest.minds.perceived_course import CourseQuestion, CourseReading
 from beliefnest.minds.planner import count_doubtful, count_values
 from beliefnest.minds.surroundings import Surroundings
 from beliefnest.minds.tracking import Tracker
 from beliefnest.minds.transitions import known_after
-from beliefnest.nest.inferring.perceived_course import CourseQuestion, CourseReading
 from beliefnest.nest.past.recording import Recording
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.paths import BeliefPath, path_text
@@ -269,20 +271,37 @@ def _chunks(model: MindModel, moments: Sequence[EvidenceMoment]) -> list[slice]:
 
 
 def credence_in(
-    recording: Recording, path: BeliefPath, model: MindModel, since: int, tick: int | None
+    recording: Recording,
+    path: BeliefPath,
+    agent: str,
+    doubt: Mapping[str, Any],
+    initial: npt.ArrayLike | None,
+    actual: str | Mapping[str, float] | None,
+    lapse: float,
+    since: int,
+    tick: int | None,
 ) -> dict[str, float]:
     """Return the credence of an agent in alternatives, by its percepts alone, without a planner.
 
     Args:
         recording: Record with the node.
         path: The node that attributes the credence.
-        model: Only its doubt, its first credence, `actual` and `lapse` are used.
+        agent: The agent.
+        doubt: Alternatives by name, as for `MindModel`.
+        initial: Probabilities of the alternatives just before the percept at `since`; None:
+            uniform.
+        actual: The actual alternative, as for `MindModel`.
+        lapse: As for `MindModel`.
         since: Tick whose percept is the first to update the initial credence.
         tick: Tick of the answer; None: the latest.
 
     Raises:
         InputError, PathError, TickError: As for `infer_in`.
     """
+    rows: Any = None if initial is None else [initial]
+    model = MindModel(
+        agent, {"any": {"at": (0, 0, 0)}}, {"any": 0}, doubt, rows, actual, lapse=lapse
+    )
     reading = _work_on(recording, path, model, since, tick).reading
     names = model.alternative_names
     weights = model.actual_weights

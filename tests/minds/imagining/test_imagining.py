@@ -14,8 +14,8 @@ from beliefnest.errors import (
     TickError,
     UnknownNameError,
 )
-from beliefnest.nest.acting.particles import spread
-from beliefnest.nest.face.imagining import ImaginationWarning
+from beliefnest.minds.imagining.imagining import ImaginationWarning
+from beliefnest.minds.imagining.particles import spread
 
 CHEST = (9, 1, 2)
 TAKE = f"await getItemFromChest(bot, new Vec3{CHEST}, {{ diamond: 1 }})"

@@ -8,7 +8,12 @@ from typing import Any, TypeVar
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError
 from beliefnest.nest.explain.made_claims import claims_made
-from beliefnest.nest.face.matters import (
+from beliefnest.nest.past.recording import Recording
+from beliefnest.pictures.figure import Figure
+from beliefnest.pictures.plot import Band, NotedClaim, PlotRow, belief_plot
+from beliefnest.pictures.time_axis import NotedAct
+from beliefnest.timeline.journal import ForkPoint
+from beliefnest.viewer.figures.matters import (
     AgentPlace,
     BlockAt,
     Carried,
@@ -17,11 +22,6 @@ from beliefnest.nest.face.matters import (
     OwnedCount,
     ValueCourse,
 )
-from beliefnest.nest.past.recording import Recording
-from beliefnest.pictures.figure import Figure
-from beliefnest.pictures.plot import Band, NotedClaim, PlotRow, belief_plot
-from beliefnest.pictures.time_axis import NotedAct
-from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import Position
@@ -63,13 +63,16 @@ def matter_of(
 
 
 def plot_of(
-    recording: Recording, matter: Matter[Any], paths: Sequence[str], until: int | None
+    recording: Recording,
+    followed: tuple[Position | None, str | None, str | None, Position | None],
+    paths: Sequence[str],
+    until: int | None,
 ) -> Figure:
     """Return the plot of a matter in some simulators, up to a tick of the real world.
 
     Args:
         recording: Recording of the nest.
-        matter: The matter to follow.
+        followed: The arguments of `matter_of`, which say what the plot follows.
         paths: Belief paths of the simulators.
         until: Last tick; None: the latest one.
 
@@ -77,6 +80,7 @@ def plot_of(
         InputError: There is no path, or there never was such a container.
         PathError: A path is malformed or names an unknown agent.
     """
+    matter = matter_of(recording, *followed)
     if not paths:
         raise InputError("a plot needs at least one simulator; give belief paths")
     names = [parse_path(path, recording.agents) for path in paths]

@@ -8,7 +8,7 @@ from typing import Any
 from beliefnest.errors import InputError, PathError, TickError
 from beliefnest.facts.kinds import GoalCondition
 from beliefnest.facts.reading import PlainScene, conditions_of, fact_entry
-from beliefnest.nest.acting.course_agreement import Tolerance
+from beliefnest.minds.imagining.course_agreement import Tolerance
 from beliefnest.nest.face.given import tick_of, whole
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint

@@ -6,12 +6,12 @@ from inspect import signature
 from typing import Any
 
 from beliefnest.errors import InputError
+from beliefnest.minds.imagining.courses import Candidate, Course, PolicyProgram
+from beliefnest.minds.imagining.histories import Faces
+from beliefnest.minds.imagining.history_starts import Doubt, HistoryStarts
 from beliefnest.minds.mind_model import MindModel
+from beliefnest.minds.node_inference import ModelStart, start_of_model
 from beliefnest.minds.walking import Strategy
-from beliefnest.nest.acting.courses import Candidate, Course, PolicyProgram
-from beliefnest.nest.face.histories import Faces
-from beliefnest.nest.face.history_starts import Doubt, HistoryStarts
-from beliefnest.nest.inferring.node_inference import ModelStart, start_of_model
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised

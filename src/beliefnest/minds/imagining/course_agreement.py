@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beliefnest.belief.chunk_pool import lines_of_sight
-from beliefnest.nest.acting.courses import Course, Glimpse
+from beliefnest.minds.imagining.courses import Course, Glimpse
 from beliefnest.nest.past.percepts import Percept
 from beliefnest.perception.percept import Gaze, gaze_from
 from beliefnest.perception.sight import Sight, SightLines

@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
+from beliefnest.minds.imagining.course_agreement import Agreement
+from beliefnest.minds.imagining.courses import Candidate, Course, CoursePlan, Glimpse, Seeds
 from beliefnest.minds.walking import Draw
-from beliefnest.nest.acting.course_agreement import Agreement
-from beliefnest.nest.acting.courses import Candidate, Course, CoursePlan, Glimpse, Seeds
 
 OnTick = Callable[[int, int], None]
 

@@ -9,11 +9,11 @@ from beliefnest.belief.view import State
 from beliefnest.errors import BranchError, InputError, PathError, StoreError
 from beliefnest.facts.kinds import GoalCondition, Heard
 from beliefnest.facts.states import Facts, StateFacts
-from beliefnest.nest.acting.courses import Course
-from beliefnest.nest.acting.particles import HistoryDraws, Lost, Particle
+from beliefnest.minds.imagining.courses import Course
+from beliefnest.minds.imagining.history_starts import HistoryStarts
+from beliefnest.minds.imagining.imagine_arguments import Evidence, goal_conditions
+from beliefnest.minds.imagining.particles import HistoryDraws, Lost, Particle
 from beliefnest.nest.face.given import check_branch_name, tick_of, whole
-from beliefnest.nest.face.history_starts import HistoryStarts
-from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.summed_state import StateSums
 from beliefnest.nest.past.timeline_state import TimelineState

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from beliefnest.minds.imagining.courses import Candidate, Course
 from beliefnest.minds.walking import Strategy
-from beliefnest.nest.acting.courses import Candidate, Course
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, ForkPoint
 from beliefnest.world.double_chests import container_at, holds_items, states_in

@@ -6,7 +6,7 @@ import warnings
 import pytest
 
 import beliefnest as bn
-from beliefnest.nest.face.imagining import ImaginationWarning
+from beliefnest.minds.imagining.imagining import ImaginationWarning
 
 GOALS = {"K": {"block": "gold_block"}, "L": {"block": "emerald_block"}}
 

@@ -10,8 +10,8 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.minds.alternatives import AgentPose, AlternativeWorlds
 from beliefnest.minds.evidence import EvidenceMoment
 from beliefnest.minds.mind_model import Alternative, PossibleGoal
+from beliefnest.minds.overlay import Overlay, pose_of
 from beliefnest.minds.surroundings import Surroundings
-from beliefnest.nest.inferring.overlay import Overlay, pose_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, Entry, TimelineKey
 from beliefnest.world.claims import Claim, claims_of

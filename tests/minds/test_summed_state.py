@@ -85,7 +85,7 @@ def assert_sums_are_folded(history):
         assert summed.blocks.current(place) == folded.blocks.current(place)
 
 
-@pytest.mark.filterwarnings("ignore::beliefnest.nest.face.imagining.ImaginationWarning")
+@pytest.mark.filterwarnings("ignore::beliefnest.minds.imagining.imagining.ImaginationWarning")
 @pytest.mark.parametrize("path", ["/", "/red"])
 @pytest.mark.parametrize("seed", few_by_day(range(12)))
 def test_summed_states_are_the_folded_ones(seed, path):

@@ -1,0 +1,1 @@
+"""Possible courses of unseen events, drawn as weighted histories; see docs/imagine.md."""

@@ -1,0 +1,1 @@
+"""Figures and plots that nests and simulators return, as values for `pictures`."""
