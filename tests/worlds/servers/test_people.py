@@ -1,7 +1,9 @@
 """People as agents: what they do in a Minecraft client is what a bot does, for all beliefs."""
 
 import io
+import os
 import re
+import signal
 import socket
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -16,6 +18,7 @@ from tests.servers import serving
 from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import BodyError, InputError, WorldError
+from beliefnest.worlds.minecraft.channel import Channel
 
 LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
 LONG_S = 120
@@ -56,6 +59,11 @@ await mineBlock(bot, new Vec3(9, 1, 9), 'dirt')
 await placeItem(bot, 'cobblestone', new Vec3(9, 1, 9))
 await depositItemIntoChest(bot, new Vec3(8, 1, 11), {apple: 1})
 await giveItemToOther(bot, 'sally', 'diamond', 1)
+"""
+OPEN_AND_GO = """
+await openDoor(bot, new Vec3(6, 1, 4))
+await goToPosition(bot, new Vec3(6, 1, 10), 0)
+await bot.lookAt(new Vec3(6, 1, 12))
 """
 DEEDS = ["use_lever", "use_door", "open_container", "get_item_from_chest", "mine_block"]
 DEEDS += ["place_block", "open_container", "deposit_item_into_chest", "give_item_to_other"]
@@ -159,6 +167,40 @@ def test_what_a_person_does_on_a_server_becomes_the_same_actions(server, tmp_pat
         with Person(nest.address, "anne"):
             nest.wait_for_people()
             assert nest.people == {"anne"}
+
+
+@pytest.mark.long
+def test_what_a_person_did_while_the_operator_stood_still_is_recognised(
+    server, tmp_path, monkeypatch
+):
+    """All that the server sent meanwhile comes at once, when the person looks elsewhere."""
+    path = tmp_path / "workshop.yaml"
+    path.write_text(WORKSHOP, encoding="utf-8")
+    processes = set()
+    begin = Channel.begin
+
+    def noting(self, name, **arguments):
+        processes.add(self.pid)
+        begin(self, name, **arguments)
+
+    monkeypatch.setattr(Channel, "begin", noting)
+    with (
+        Nest.open(Scenario.load(str(path)), server.address()) as nest,
+        Person(nest.address, "anne") as anne,
+    ):
+        nest.wait_for_people()
+        (operator,) = processes
+        os.kill(operator, signal.SIGSTOP)
+        try:
+            anne.does(OPEN_AND_GO)
+            while not anne.is_done:
+                pass
+        finally:
+            os.kill(operator, signal.SIGCONT)
+        assert nest.wait(
+            lambda: ("use_door", "anne") in {(e.kind, e.actor) for e in nest["/"].state.events},
+            LONG_S,
+        )
 
 
 @pytest.mark.long

@@ -44,6 +44,7 @@ class People {
   /** Listen to the operator's connection. */
   attach (bot) {
     bot.on('entitySwingArm', ({ username }) => this.here.get(username)?.swing(this.region.followed))
+    bot.on('entityMoved', ({ username }) => this.here.get(username)?.look(this.region.followed))
     bot.on('chat', (speaker, text) => this.said(speaker, text))
   }
 
@@ -87,7 +88,7 @@ class People {
   endTick () {
     if (!this.operator.link.isHere) return []
     for (const [agent, person] of this.here) {
-      person.endTick(this.region.tick)
+      person.endTick(this.region.tick, this.region.followed)
       this.away.set(agent, person.isOnline ? 0 : this.away.get(agent) + 1)
     }
     return [...this.away].filter(([, ticks]) => ticks > GONE_AFTER).map(([agent]) => agent)

@@ -3,6 +3,7 @@
  * Person who plays an agent on a remote server: what the operator sees of them, and the server's data of their
  * possessions.
  */
+const { Vec3 } = require('vec3')
 const { EYE_HEIGHT } = require('../../../../../skills/code/lib/sight')
 const { rounded, sorted } = require('../regions/facts')
 const { wrap } = require('../server/angles')
@@ -37,6 +38,9 @@ class Person {
     this.latest = latest
     this.last = null
     this.swungAt = -Infinity
+    // Places of the eye with directions of view, {eye, gaze, at}, in order: those of the last moments. Several may have
+    // come in one tick, and what they do is judged at its end, when they may look elsewhere.
+    this.views = []
     this.askedAt = -Infinity
     this.isAsking = false
     this.stood = { place: null, ticks: 0 }
@@ -52,26 +56,32 @@ class Person {
     return this.operator.bot.players[this.agent] !== undefined
   }
 
-  get eye () {
-    return this.entity.position.offset(0, EYE_HEIGHT, 0)
-  }
-
   swing (now) {
     this.swungAt = now
+    this.look(now)
+  }
+
+  /** Note where they are and look now. */
+  look (now) {
+    if (this.entity === null) return
+    const { position, yaw, headYaw, pitch } = this.entity
+    const turned = headYaw ?? yaw
+    const gaze = new Vec3(-Math.sin(turned) * Math.cos(pitch), Math.sin(pitch), -Math.cos(turned) * Math.cos(pitch))
+    this.views.push({ eye: position.offset(0, EYE_HEIGHT, 0), gaze, at: now })
+    // A view lasts until the next one.
+    this.views = this.views.filter((_, index, { [index + 1]: next }) => next === undefined || now - next.at <= SWUNG_WITHIN)
   }
 
   /**
-   * Return the angle, in radians, between their view and the middle of a block; Infinity if they cannot reach it.
+   * Return the smallest angle, in radians, between one of their last views and the middle of a block; Infinity if they
+   * could not reach it.
    * @returns {number}
    */
   offAim (position) {
-    if (this.entity === null) return Infinity
-    const way = position.offset(0.5, 0.5, 0.5).minus(this.eye)
-    if (way.norm() > REACH) return Infinity
-    const { yaw, headYaw, pitch } = this.entity
-    const turned = headYaw ?? yaw
-    const gaze = way.clone().set(-Math.sin(turned) * Math.cos(pitch), Math.sin(pitch), -Math.cos(turned) * Math.cos(pitch))
-    return Math.acos(Math.max(-1, Math.min(1, gaze.dot(way) / way.norm())))
+    return Math.min(Infinity, ...this.views.map(({ eye, gaze }) => {
+      const way = position.offset(0.5, 0.5, 0.5).minus(eye)
+      return way.norm() > REACH ? Infinity : Math.acos(Math.max(-1, Math.min(1, gaze.dot(way) / way.norm())))
+    }))
   }
 
   /** Return true if they may just have used, mined or placed the block. */
@@ -81,7 +91,7 @@ class Person {
 
   /** Return true if an item that appears at a position may come from their hand. */
   mayHaveThrown (position) {
-    return this.entity !== null && this.eye.distanceTo(position) <= FROM_THE_HAND
+    return this.views.some(({ eye }) => eye.distanceTo(position) <= FROM_THE_HAND)
   }
 
   /** Return AGENT. @returns {object} */
@@ -95,8 +105,9 @@ class Person {
   }
 
   /** Report a `move_to` if they have come to stand after walking; called at the end of a tick. */
-  endTick (tick) {
+  endTick (tick, now) {
     if (this.entity === null) return
+    if (this.views.length === 0) this.look(now)
     const { stood, entity: { position } } = this
     if (stood.place === null || !stood.place.equals(position)) Object.assign(stood, { place: position.clone(), ticks: 0 })
     else if (++stood.ticks === STANDING_TICKS) this.witness.report({ kind: 'move_to', detail: { destination: listOf(position.floored()) } })
