@@ -63,10 +63,17 @@ class Person:
     def is_done(self) -> bool:
         """Return True if they have done all their tasks; raise the error of a failed one."""
         while not self._told.empty():
-            told = self._told.get()
-            assert "failed" not in told and "left" not in told, told
-            self._done += "done" in told
+            self._note(self._told.get())
         return self._done == self._asked
+
+    def finish(self) -> None:
+        """Wait until they have done all their tasks; raise the error of a failed one."""
+        while self._done < self._asked:
+            self._note(self._told.get(timeout=_LIMIT_S))
+
+    def _note(self, told: dict[str, Any]) -> None:
+        assert "failed" not in told and "left" not in told, told
+        self._done += "done" in told
 
     def leave(self) -> None:
         """Let them do what they were told, and go."""

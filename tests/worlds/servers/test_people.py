@@ -193,8 +193,7 @@ def test_what_a_person_did_while_the_operator_stood_still_is_recognised(
         os.kill(operator, signal.SIGSTOP)
         try:
             anne.does(OPEN_AND_GO)
-            while not anne.is_done:
-                pass
+            anne.finish()
         finally:
             os.kill(operator, signal.SIGCONT)
         assert nest.wait(
