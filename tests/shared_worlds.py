@@ -13,7 +13,10 @@ from beliefnest.worlds.by_name import Worlds, open_world
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import World
 
-__all__ = ["Lent", "kept_worlds", "lent"]
+__all__ = ["WORLDS", "Lent", "kept_worlds", "lent"]
+
+WORLDS = ("embedded", "scripted")
+"""Names of the worlds that this package declares."""
 
 Lent = Callable[[int], AbstractContextManager[Worlds]]
 
@@ -43,7 +46,7 @@ def kept_worlds(lent: Lent) -> Iterator[None]:
         with lent(seed) as worlds:
             return worlds.lend(name)
 
-    def shared(seed: int, launch: None) -> AbstractContextManager[Worlds]:
+    def shared(seed: int, begun: object) -> AbstractContextManager[Worlds]:
         return lent(seed)
 
     def nothing_ahead(world: str, seed: int) -> AbstractContextManager[None]:

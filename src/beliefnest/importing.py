@@ -5,7 +5,7 @@ import importlib
 import importlib.util
 import sys
 from importlib.machinery import ModuleSpec
-from importlib.metadata import distribution
+from importlib.metadata import EntryPoint, EntryPoints, distribution, entry_points
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -13,8 +13,9 @@ from typing import Any
 from beliefnest.errors import InputError
 
 _SUFFIX = ".py"
+_OWN = "beliefnest"
 _PARTS = "beliefnest.parts"
-"""Group of entry points that `pyproject.toml` declares."""
+"""Group of entry points that `pyproject.toml` declares for rooms that call what lies above."""
 
 
 def is_object_name(text: str) -> bool:
@@ -47,14 +48,58 @@ def part(name: str) -> Any:
     """Return a part of this package that lies above the room which calls it.
 
     Args:
-        name: Name of an entry point: `imagine` or `page`.
+        name: Name of an entry point, such as `imagine` or `page`.
 
     Raises:
         InputError: The installed package does not declare it.
     """
-    for entry in distribution("beliefnest").entry_points.select(group=_PARTS, name=name):
+    for entry in _own_entries(_PARTS).select(name=name):
         return entry.load()
     raise InputError(f"the installed BeliefNest has no part {name!r}; install it again with pip")
+
+
+def installed(group: str, name: str) -> EntryPoint | None:
+    """Return the entry point of a name: that of this package, or else of another installed one.
+
+    Raises:
+        InputError: Two other packages use the name for different objects.
+    """
+    # To read what all packages declare takes about 5 ms.
+    for entry in _own_entries(group).select(name=name):
+        return entry
+    entries = {entry.value: entry for entry in entry_points(group=group, name=name)}
+    if len(entries) > 1:
+        raise InputError(
+            f"several installed packages declare {name!r} for {group}: {', '.join(sorted(entries))}"
+            "; uninstall all but one"
+        )
+    return next(iter(entries.values()), None)
+
+
+def installed_names(group: str) -> tuple[str, ...]:
+    """Return the names of all entry points of a group, those of this package first."""
+    own = _own_entries(group).names
+    return (*sorted(own), *sorted(entry_points(group=group).names - own))
+
+
+def load(entry: EntryPoint, what: str) -> Any:
+    """Return the object of an entry point; `what` is its kind for messages, such as "world".
+
+    Raises:
+        InputError: It cannot be imported.
+    """
+    try:
+        return entry.load()
+    except Exception as error:  # Code of users may raise anything.
+        package = entry.dist.name if entry.dist is not None else entry.module
+        raise InputError(
+            f"the {what} {entry.name!r} of the installed package {package} ({entry.value}) cannot "
+            f"be imported: {type(error).__name__}: {error}"
+        ) from error
+
+
+def _own_entries(group: str) -> EntryPoints:
+    return distribution(_OWN).entry_points.select(group=group)
 
 
 def is_importable(place: str) -> bool:

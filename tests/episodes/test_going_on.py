@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.shared_worlds import WORLDS
 
 import beliefnest as bn
 from beliefnest.episodes.policies import Program, Scripted
-from beliefnest.worlds.names import WORLDS
 
 ERRAND = """
 await say(bot, 'I begin.')

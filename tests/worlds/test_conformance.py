@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 from tests.servers import serving
+from tests.shared_worlds import WORLDS
 
 from beliefnest.testing import check_world
 from beliefnest.world.frames import Frame, Snapshot
@@ -13,7 +14,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, EventKind
 from beliefnest.worlds.by_name import open_world
-from beliefnest.worlds.names import WORLDS
 from beliefnest.worlds.protocol import Body, World
 from beliefnest.worlds.scripted.nest_world import ScriptedBody
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import pytest
+from tests.shared_worlds import WORLDS
 
 import beliefnest as bn
 from beliefnest.errors import ScenarioError
@@ -12,7 +13,6 @@ from beliefnest.prompts.templates import built_in_template
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.double_chests import ByEitherHalf
-from beliefnest.worlds.names import WORLDS
 
 
 class _Same:

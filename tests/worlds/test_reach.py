@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import pytest
 from tests.profiles import few_by_day
+from tests.shared_worlds import WORLDS
 
 from beliefnest.skills.calls import Call
 from beliefnest.world.frames import Snapshot
@@ -12,7 +13,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Position
 from beliefnest.worlds.by_name import open_world
-from beliefnest.worlds.names import WORLDS
 from beliefnest.worlds.protocol import World
 
 BOX = Box((0, 0, 0), (12, 11, 14))

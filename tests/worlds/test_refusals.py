@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from tests.shared_worlds import WORLDS
 
 import beliefnest as bn
 from beliefnest.skills import skills
-from beliefnest.worlds.names import WORLDS
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 

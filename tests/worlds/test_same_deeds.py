@@ -5,13 +5,13 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from tests.shared_worlds import WORLDS
 
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Event, EventKind, Position
 from beliefnest.worlds.by_name import open_world
-from beliefnest.worlds.names import WORLDS
 from beliefnest.worlds.protocol import RunRules, World
 
 BOX = Box((0, 0, 0), (8, 4, 8))

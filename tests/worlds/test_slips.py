@@ -3,9 +3,9 @@
 from typing import Any
 
 import pytest
+from tests.shared_worlds import WORLDS
 
 import beliefnest as bn
-from beliefnest.worlds.names import WORLDS
 
 ROOM: dict[str, Any] = {
     "name": "room",

@@ -10,8 +10,7 @@ from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.outline import builtin_outline
 from beliefnest.scenarios.sources import builtin_names
 from beliefnest.suites import SUITES
-from beliefnest.worlds.names import WORLDS
-from beliefnest.worlds.servers.address import SCHEME
+from beliefnest.worlds.names import server_forms, world_names
 
 
 def print_installed(*, as_json: bool) -> None:
@@ -29,7 +28,7 @@ def print_installed(*, as_json: bool) -> None:
         "tasks": list(builtin_tasks()),
         "suites": list(SUITES),
         "templates": list(BUILT_IN_TEMPLATES),
-        "worlds": list(WORLDS),
+        "worlds": list(world_names()),
         "models": list(model_names()),
     }
     table = result_table("scenario", "condition", "about", right=("condition",))
@@ -41,7 +40,7 @@ def print_installed(*, as_json: bool) -> None:
         "tasks": builtin_tasks(),
         "suites": SUITES,
         "templates": tuple(BUILT_IN_TEMPLATES),
-        "worlds": (*WORLDS, f"{SCHEME}://HOST:PORT"),
+        "worlds": (*world_names(), *server_forms()),
         "models": model_names(),
     }
     lines = (Text(f"{what}: {', '.join(names)}") for what, names in further.items())

@@ -45,6 +45,7 @@ from beliefnest.timeline.store import Journal
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.minecraft.embedded import launched
 from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.names import check_world
 
@@ -97,7 +98,7 @@ def _run_in(
     try:
         with (
             noted_warnings() as warned,
-            Worlds(options.seed, launch=launch) as worlds,
+            Worlds(options.seed, begun=launched(options.seed, launch)) as worlds,
             kernels_ahead(),
         ):
             for cell in cells:

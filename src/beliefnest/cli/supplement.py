@@ -33,7 +33,7 @@ from beliefnest.studies.reproducing import (
 from beliefnest.studies.run_result import ReportedRun, read_report
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.world.words import counted
-from beliefnest.worlds.names import WORLDS
+from beliefnest.worlds.names import is_address
 
 _MOST_TOLD = 20
 _OF_MACHINE = ("seconds", "run_dir", "model", "table")
@@ -170,10 +170,10 @@ def _reproduce_run(
     folder, settings = run.path, run.report["settings"]
     check_trust(_code_of(result), trust=trust)
     models = _replaying(result, again.with_name("answers"))
-    if settings["world"] not in WORLDS:
+    if is_address(settings["world"]):
         raise InputError(
             f"{folder} was run in the world {settings['world']}, which is in real time and cannot "
-            f"be repeated; runs in {', '.join(WORLDS)} can"
+            f"be repeated; runs in other worlds can"
         )
     system = None
     if "system" in settings:

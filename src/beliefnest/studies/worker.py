@@ -25,6 +25,7 @@ from beliefnest.studies.episode_cells import EpisodeCell
 from beliefnest.studies.episode_playing import play_episode
 from beliefnest.studies.terms import Terms
 from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.minecraft.embedded import launched
 from beliefnest.worlds.minecraft.launching import Launch
 
 
@@ -56,7 +57,7 @@ class Worker:
     """
 
     def __init__(self, stack: ExitStack, launch: Launch | None = None) -> None:
-        self._worlds = stack.enter_context(Worlds(0, launch=launch))
+        self._worlds = stack.enter_context(Worlds(0, begun=launched(0, launch)))
         self._renderer = Renderer()
 
     def play(self, cell: Keyed, terms: Terms) -> CellResult:

@@ -1,15 +1,55 @@
 """Names of worlds, and addresses in their place."""
 
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.worlds.servers.address import SCHEME, ServerAddress, is_server
-from beliefnest.worlds.servers.listening import DEFAULT_PORT, ListenAddress, is_hosted
+from beliefnest.importing import installed, installed_names, load, part
 
-WORLDS = ("embedded", "scripted")
-"""Names of the worlds.
+if TYPE_CHECKING:  # Commands that list names import no NumPy.
+    from beliefnest.worlds.process_limits import ProcessLimits
+    from beliefnest.worlds.protocol import World
 
-Any other name is the address of a server, `minecraft://HOST:PORT`, or of the embedded world in real
-time, `embedded://HOST:PORT`.
-"""
+_WORLDS = "beliefnest.worlds"
+"""Group of entry points by name of the world: functions of seed and limits that return a world."""
+
+_SERVERS = "beliefnest.servers"
+"""Group of entry points by scheme, such as `minecraft` in `minecraft://HOST:PORT`: functions of the
+whole address, seed and limits that return a world in real time."""
+
+_ADDRESS = "://"
+
+
+def world_names() -> tuple[str, ...]:
+    """Return the names of the installed worlds. Any other name is an address."""
+    return installed_names(_WORLDS)
+
+
+def server_forms() -> tuple[str, ...]:
+    """Return the forms of addresses that are worlds, such as `minecraft://HOST:PORT`."""
+    return tuple(f"{scheme}{_ADDRESS}HOST:PORT" for scheme in installed_names(_SERVERS))
+
+
+def is_address(name: str) -> bool:
+    """Return True if the name of a world is the address of one in real time."""
+    return _ADDRESS in name
+
+
+def maker_of(name: str) -> "Callable[[int, ProcessLimits | None], World]":
+    """Return the function of seed and limits that makes the world of a name; it starts nothing.
+
+    Raises:
+        UnknownNameError: There is no world of that name.
+        InputError: It cannot be imported.
+    """
+    scheme, colon, _ = name.partition(_ADDRESS)
+    entry = installed(_SERVERS, scheme.lower()) if colon else installed(_WORLDS, name)
+    if entry is None:
+        forms = ", ".join((*world_names(), *server_forms()))
+        raise UnknownNameError(f"there is no world {name!r}; there are {forms}")
+    make: Any = load(entry, "world")
+    return partial(make, name) if colon else make
 
 
 def check_world(name: str, *, servers: bool = True) -> None:
@@ -23,20 +63,14 @@ def check_world(name: str, *, servers: bool = True) -> None:
         UnknownNameError: There is no world of that name.
         InputError: It is a malformed address of a server.
     """
-    if is_server(name) or is_hosted(name):
-        if is_server(name):
-            ServerAddress.parse(name)
-        else:
-            ListenAddress.parse(name)
+    make = maker_of(name)
+    if is_address(name):
+        make(0, None)
         if not servers:
             raise InputError(
                 f"{name} plays one run at a time, in real time; use it with `beliefnest run` or "
-                f"Nest.open, and one of the worlds {', '.join(WORLDS)} for all else"
+                f"Nest.open, and one of the worlds {', '.join(world_names())} for all else"
             )
-    elif name not in WORLDS:
-        raise UnknownNameError(
-            f"there is no world {name!r}; there are {', '.join(WORLDS)}, {SCHEME}://HOST:PORT"
-        )
 
 
 def world_name(world: str, *, realtime: bool, listen: int | str | None) -> str:
@@ -55,4 +89,5 @@ def world_name(world: str, *, realtime: bool, listen: int | str | None) -> str:
         raise InputError(
             f"the world {world!r} has no real time; realtime is for the world embedded"
         )
-    return ListenAddress.of(DEFAULT_PORT if listen is None else listen).world
+    name: str = part("listening")(listen)
+    return name

@@ -1,6 +1,6 @@
 """Interfaces of a world and the bodies in it, for all kinds of worlds."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -319,6 +319,17 @@ class World(Protocol):
     def versions(self) -> Mapping[str, str]:
         """Versions of the running programs by name."""
 
+    @property
+    def realtime(self) -> "RealtimePlay | None":
+        """The same world, if its real world runs in real time; None for all others."""
+
+    def start(self) -> object:
+        """Start the process behind the world now, if there is one and it has not begun.
+
+        Raises:
+            BodyError: It could not be started.
+        """
+
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
         """Create a body and fill it.
 
@@ -341,3 +352,55 @@ class World(Protocol):
 
     def close(self) -> None:
         """Close the world and all its bodies."""
+
+
+class RealtimePlay(World, Protocol):
+    """World whose real world runs in real time, so that people can join it."""
+
+    @property
+    def address(self) -> str:
+        """Address for Minecraft clients: `HOST:PORT`."""
+
+    @property
+    def minecraft(self) -> str:
+        """Minecraft version of the clients."""
+
+    @property
+    def invited(self) -> frozenset[str]:
+        """Names of the people who may join."""
+
+    @property
+    def host(self) -> "SpeechHost | None":
+        """The process of this nest that people join; None on a server elsewhere."""
+
+    def invite(self, people: Iterable[str]) -> None:
+        """Set the people who may join; disconnect others who are there.
+
+        Raises:
+            WorldError: A server's operator may not kick people.
+        """
+
+    def here(self) -> frozenset[str]:
+        """Return the names of the people who play now."""
+
+    def pause(self, *, paused: bool) -> None:
+        """Stop or resume time in the real world.
+
+        Raises:
+            WorldError: It is on a server, whose time cannot be stopped.
+        """
+
+
+class SpeechHost(Protocol):
+    """Process that people join, in which they hear only what it is told that they hear."""
+
+    def hearing(self, *, everybody: bool) -> None:
+        """Set whether all people hear everything said aloud, so that lines need not wait."""
+
+    def heard(self, tick: int, agents: Sequence[Sequence[str]]) -> None:
+        """Report the hearers of a tick's utterances; people receive only the lines they heard.
+
+        Args:
+            tick: The tick.
+            agents: For each utterance, in order, the names of its hearers.
+        """

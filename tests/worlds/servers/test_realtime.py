@@ -15,7 +15,7 @@ from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import BodyError, InputError
 from beliefnest.world.values import EventKind
-from beliefnest.worlds.by_name import open_world, realtime_of
+from beliefnest.worlds.by_name import open_world
 
 LONG_S = 120
 PATIENCE = 60
@@ -148,7 +148,7 @@ def test_skills_do_and_are_told_as_in_the_embedded_world(tmp_path):
     with serving(latency=15, version="1.20.2") as older:
         played = worked(scenario, older.address())
         with closing(open_world(older.address(), 0)) as world:
-            joined = realtime_of(world)
+            joined = world.realtime
             assert joined is not None
             assert joined.minecraft in ("1.20.2", *given_version())
     for here, there in zip(worked(scenario, "embedded"), played, strict=True):

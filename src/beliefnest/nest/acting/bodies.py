@@ -10,19 +10,18 @@ from dataclasses import dataclass
 
 from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.earshot import Earshot
-from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.frame_recorder import ChatListener, FrameRecorder
 from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.nest.acting.sensing import Sensing
 from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
 from beliefnest.nest.acting.starting import BodyStart, start_of
+from beliefnest.nest.acting.visitable import Visitable
 from beliefnest.nest.past.body_state import note_internal_state, present
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import BeliefPath, path_text
-from beliefnest.worlds.by_name import hosted_of
 from beliefnest.worlds.protocol import Body, ProgramPast, SenseSource, World
 
 
@@ -47,14 +46,14 @@ class Bodies:
         self,
         recording: Recording,
         world: World,
-        embodying: Embodying,
+        visitable: Visitable | None,
         reader: ClaimReader | None = None,
     ) -> None:
         self.world = world
         self.others: list[World] = []
         self.chat_listeners: list[ChatListener] = []
         self._recording = recording
-        self._embodying = embodying
+        self._visitable = visitable
         self._hearsay = None if reader is None else Hearsay(reader, recording)
         self._embodied: dict[BeliefPath, _RecordedBody] = {}
         self._bodiless: set[BeliefPath] = set()
@@ -96,7 +95,7 @@ class Bodies:
         recording = self._recording
         on_chat = self._tell_chat if key.path == () else None
         # Only the real world runs in real time, so only its frames are shown while they come.
-        follower = self._embodying if key.path == () else None
+        follower = self._visitable if key.path == () else None
         return FrameRecorder(
             recording.journal,
             recording.history,
@@ -108,10 +107,10 @@ class Bodies:
         )
 
     def _earshot(self) -> Earshot | None:
-        people, world = self._recording.setting.people, hosted_of(self.world)
-        if world is None or not people:
+        people, joined = self._recording.setting.people, self.world.realtime
+        if joined is None or joined.host is None or not people:
             return None
-        return Earshot(self._recording.history, people, world)
+        return Earshot(self._recording.history, people, joined.host)
 
     def _tell_chat(self, tick: int, speaker: str, text: str) -> None:
         for listener in self.chat_listeners:
@@ -234,7 +233,8 @@ class Bodies:
                 self._embodied[path].recorder.drop()
             # Forests may have folded entries that the journal has now dropped.
             self._recording.history.forget_all()
-            self._embodying.look_again()
+            if self._visitable is not None:
+                self._visitable.look_again()
             self.restore(path)
             raise
 

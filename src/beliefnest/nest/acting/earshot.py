@@ -7,7 +7,7 @@ from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Event
-from beliefnest.worlds.servers.hosted import HostedWorld
+from beliefnest.worlds.protocol import SpeechHost
 
 
 class Earshot:
@@ -16,13 +16,13 @@ class Earshot:
     Args:
         history: History that computes who perceives an event.
         people: Names of the agents that people play.
-        world: The world that people have joined.
+        host: The process that people have joined.
     """
 
-    def __init__(self, history: StateHistory, people: Collection[str], world: HostedWorld) -> None:
+    def __init__(self, history: StateHistory, people: Collection[str], host: SpeechHost) -> None:
         self._history = history
         self._people = sorted(people)
-        self._world = world
+        self._host = host
 
     @property
     def is_global(self) -> bool:
@@ -31,7 +31,7 @@ class Earshot:
 
     def begin(self) -> None:
         """Tell a process that has just begun how people hear."""
-        self._world.hearing(everybody=self.is_global)
+        self._host.hearing(everybody=self.is_global)
 
     def awaits(self, frame: Frame) -> bool:
         """Return True if the world waits to be told who hears the utterances of a frame."""
@@ -53,7 +53,7 @@ class Earshot:
             for names, hears in zip(heard, spoken, strict=True):
                 if hears:
                     names.append(name)
-        self._world.heard(frame.tick, heard)
+        self._host.heard(frame.tick, heard)
 
 
 def _is_aloud(event: Event) -> bool:

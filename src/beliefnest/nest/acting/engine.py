@@ -15,10 +15,11 @@ from typing import Concatenate, ParamSpec, Self, TypeVar
 import msgspec
 
 from beliefnest.errors import BodyLostError, BranchError
+from beliefnest.importing import part
 from beliefnest.nest.acting.bodies import Bodies
-from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.hearsay import ClaimReader
 from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, speculate
+from beliefnest.nest.acting.visitable import Visitable
 from beliefnest.nest.past.body_state import internal_state_at, note_internal_state, present
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
@@ -58,7 +59,8 @@ def _shown(method: Callable[Concatenate["Engine", P], R]) -> Callable[Concatenat
     @wraps(method)
     def visible(self: "Engine", /, *args: P.args, **kwargs: P.kwargs) -> R:
         result = method(self, *args, **kwargs)
-        self.embodying.keep_up()
+        if self.visitable is not None:
+            self.visitable.keep_up()
         return result
 
     return visible
@@ -81,7 +83,8 @@ class Engine:
     Attributes:
         recording: The nest's timelines and states.
         world: The world that has the bodies. A body is opened when it is first needed.
-        embodying: The beliefs that stand in Minecraft for people to visit.
+        visitable: The beliefs that stand in Minecraft for people to visit; None: nobody can join
+            the world.
         bodies: The bodies of simulators in control mode.
     """
 
@@ -90,8 +93,11 @@ class Engine:
     ) -> None:
         self.recording = recording
         self.world = world
-        self.embodying = Embodying(recording, world)
-        self.bodies = Bodies(recording, world, self.embodying, reader)
+        joined = world.realtime
+        self.visitable: Visitable | None = None
+        if joined is not None:
+            self.visitable = part("visits")(recording, joined)
+        self.bodies = Bodies(recording, world, self.visitable, reader)
 
     def begin(self) -> Self:
         """Start the real world's timeline and open its body."""

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterator
 
 from beliefnest.nest.acting.earshot import Earshot
-from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.hearsay import Hearsay, has_unread
+from beliefnest.nest.acting.visitable import Visitable
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.store import Journal
@@ -45,7 +45,7 @@ class FrameRecorder:
         key: TimelineKey,
         hearsay: Hearsay | None = None,
         on_chat: ChatListener | None = None,
-        follower: Embodying | None = None,
+        follower: Visitable | None = None,
         earshot: Earshot | None = None,
     ) -> None:
         self.key = key

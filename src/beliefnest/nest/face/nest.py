@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 from beliefnest.belief.grounds import InitialBelief
 from beliefnest.belief.view import State
@@ -15,7 +15,6 @@ from beliefnest.nest.acting.script import OnProgress, play_script
 from beliefnest.nest.face.base import NestBase
 from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction, programs_by_name
 from beliefnest.nest.face.given import tick_of
-from beliefnest.nest.face.layout import Layout, layout_of
 from beliefnest.nest.face.opening import BareSetting, HasSetting, as_scenario, begun, resumed
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import Past
@@ -32,12 +31,15 @@ from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
 from beliefnest.world.seeds import checked_seed
 from beliefnest.world.values import TICKS_PER_SECOND, Position
-from beliefnest.worlds.by_name import Worlds, open_world, realtime_of
+from beliefnest.worlds.by_name import Worlds, open_world
 from beliefnest.worlds.names import world_name
 from beliefnest.worlds.process_limits import ProcessLimits
+from beliefnest.worlds.protocol import RealtimePlay
 from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
 from beliefnest.worlds.scripted.world import ScriptedWorld
-from beliefnest.worlds.servers.realtime import RealtimeWorld
+
+if TYPE_CHECKING:
+    from beliefnest.visits.layout import Layout
 
 _PATIENCE_S = 600.0
 _LONGEST_S = 24 * 60 * 60
@@ -270,7 +272,7 @@ class Nest(NestBase):
         """
         self[path].child(agent)
         parsed = parse_path(path, self.agents)
-        if not parsed and realtime_of(self._engine.world) is not None:
+        if not parsed and self._engine.world.realtime is not None:
             raise InputError(
                 "this real world runs in real time, so programs cannot be tried out in it; explore "
                 "a belief instead, which is played in the embedded world"
@@ -386,14 +388,14 @@ class Nest(NestBase):
     @property
     def address(self) -> str | None:
         """The address at which Minecraft clients join, `HOST:PORT`; None if people cannot join."""
-        host = realtime_of(self._engine.world)
+        host = self._engine.world.realtime
         return None if host is None else host.address
 
     @property
     @in_turn
     def people(self) -> frozenset[str]:
         """The names of the people who are joined now."""
-        host = realtime_of(self._engine.world)
+        host = self._engine.world.realtime
         return frozenset() if host is None or not host.invited else host.here()
 
     def wait_for_people(
@@ -410,7 +412,7 @@ class Nest(NestBase):
             InputError: The time is below 0, or longer than a day.
             WorldError: A person did not join.
         """
-        host = realtime_of(self._engine.world)
+        host = self._engine.world.realtime
         if host is None or not host.invited:
             return
         shown: frozenset[str] | None = None
@@ -478,8 +480,8 @@ class Nest(NestBase):
         """
         self._real_time_world().pause(paused=False)
 
-    def _real_time_world(self) -> RealtimeWorld:
-        world = realtime_of(self._engine.world)
+    def _real_time_world(self) -> RealtimePlay:
+        world = self._engine.world.realtime
         if world is None:
             raise WorldError(
                 "this world does not run in real time, so there is nothing to pause: no time "
@@ -487,12 +489,12 @@ class Nest(NestBase):
             )
         return world
 
-    def _host_of_person(self, name: str) -> RealtimeWorld:
+    def _host_of_person(self, name: str) -> RealtimePlay:
         people = self._recording.setting.people
         if name not in people:
             known = ", ".join(sorted(people)) or "none"
             raise UnknownNameError(f"this scenario has no person {name!r}; its people are {known}")
-        host = realtime_of(self._engine.world)
+        host = self._engine.world.realtime
         if host is None:
             raise InputError(
                 f"{name} is a person, and people cannot join this world; open it with "
@@ -501,20 +503,25 @@ class Nest(NestBase):
         return host
 
     @in_turn
-    def layout(self) -> Layout:
+    def layout(self) -> "Layout":
         """Return the places of the real world and of all embodied simulators in Minecraft.
 
         Raises:
             InputError: The real world does not run in real time, so nobody can visit it.
         """
-        return layout_of(self._engine.embodying)
+        if self._engine.visitable is None:
+            raise InputError(
+                "nothing stands where people could go, because this world does not run in real "
+                "time; open the nest with realtime=True, listen=25565, or on a server"
+            )
+        return self._engine.visitable.layout()
 
 
 def _names(people: frozenset[str]) -> str:
     return " and ".join(sorted(people))
 
 
-def _line(host: RealtimeWorld, awaited: frozenset[str]) -> str:
+def _line(host: RealtimePlay, awaited: frozenset[str]) -> str:
     return (
         f"join as {' or '.join(sorted(awaited))}: "
         f"Minecraft Java edition {host.minecraft}, Multiplayer, Direct Connection, {host.address}"

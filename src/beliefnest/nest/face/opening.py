@@ -16,11 +16,10 @@ from beliefnest.prompts import Renderer
 from beliefnest.timeline.run_records import RunRecord
 from beliefnest.timeline.store import Journal
 from beliefnest.world.nameable import ClaimsFrom
-from beliefnest.worlds.by_name import Worlds, new_world, open_world, realtime_of
+from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.names import maker_of
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import World
-from beliefnest.worlds.servers.address import is_server
-from beliefnest.worlds.servers.listening import is_hosted
 
 
 class HasSetting(Protocol):
@@ -137,13 +136,13 @@ def resumed(
     journal = Journal.open(store)
     try:
         recording, name = read_recording(journal, renderer)
-        if worlds is not None:
-            world = worlds.lend(name)
-        elif is_hosted(name) or (is_server(name) and recording.setting.people):
-            # People may join before anything else needs the world.
-            world = open_world(name, recording.seed, limits)
+        if worlds is None:
+            world = maker_of(name)(recording.seed, limits)
+            if world.realtime is not None and world.realtime.host is not None:
+                # People may join before anything else needs the world.
+                world.start()
         else:
-            world = new_world(name, recording.seed, limits)
+            world = worlds.lend(name)
         _invite(recording.setting, world)
         journal.records.add_versions(own_versions())
         return Engine(recording, world, reader_of(claims_from, recording))
@@ -154,7 +153,7 @@ def resumed(
 
 def _invite(setting: Setting, world: World) -> None:
     """Let the people of a setting join. Raise InputError if they cannot join this world."""
-    host = realtime_of(world)
+    host = world.realtime
     if host is not None:
         host.invite(setting.people)
     elif setting.people:

@@ -307,11 +307,18 @@ class Simulator(ShownSimulator):
             raise InputError(f"embody() was given {stands!r}; give True, or False to end it")
         if not isinstance(unknown, str):
             raise InputError(f"unknown is {unknown!r}; give the name of a block")
-        embodying = self._engine.embodying
-        if stands:
-            embodying.begin(self._path, unknown)
+        visitable = self._engine.visitable
+        if visitable is None:
+            if stands:
+                raise InputError(
+                    "nobody can visit a belief in this world, because it does not run in real "
+                    "time; open the nest with realtime=True, listen=25565, or on a server with "
+                    'world="minecraft://HOST:PORT"'
+                )
+        elif stands:
+            visitable.begin(self._path, unknown)
         else:
-            embodying.end(self._path)
+            visitable.end(self._path)
 
     def _live_on(self, recording: Recording) -> "Simulator":
         return Simulator(Engine(recording, ScriptedNestWorld()), self._path)

@@ -15,7 +15,15 @@ from beliefnest.worlds.minecraft import node_messages
 from beliefnest.worlds.minecraft.channel import Channel
 from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.process_limits import ProcessLimits
-from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, SenseSource, Sink
+from beliefnest.worlds.protocol import (
+    AS_USUAL,
+    ProgramResult,
+    RealtimePlay,
+    RunRules,
+    SenseSource,
+    Sink,
+    World,
+)
 
 
 class _Telling:
@@ -212,6 +220,11 @@ class NodeWorld(Owned, ABC):
         if self._channel is not None:
             self._channel.kill()
 
+    @property
+    def realtime(self) -> RealtimePlay | None:
+        """None: time passes only in calls; see `World`."""
+        return None
+
     @abstractmethod
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
         """Create a body and fill it; see `World`."""
@@ -321,3 +334,8 @@ def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
         "items": node_messages.items_message(after.items),
         "internal_state": after.internal_state,
     }
+
+
+def launched(seed: int, launch: Launch | None) -> Mapping[str, World]:
+    """Return the embedded world of a launch, by its name; empty without a launch."""
+    return {} if launch is None else {"embedded": EmbeddedWorld(seed, launch=launch)}

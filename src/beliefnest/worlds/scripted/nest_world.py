@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import Snapshot
+from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, SenseSource, Sink
 from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.ground_cache import Grounds
@@ -89,6 +90,7 @@ class ScriptedNestWorld:
     """World of scripted bodies; `first` becomes the first body, the real world's."""
 
     has_physics = False
+    realtime = None
     versions: Mapping[str, str] = MappingProxyType({})
 
     def __init__(self, first: ScriptedWorld | None = None) -> None:
@@ -105,6 +107,9 @@ class ScriptedNestWorld:
         world = world or ScriptedWorld.from_snapshot(snapshot)
         return ScriptedBody(world, sink, seed, self._grounds, self._desk)
 
+    def start(self) -> None:
+        """Do nothing: there is no process."""
+
     def another(self) -> "ScriptedNestWorld":
         """Return another empty world."""
         return ScriptedNestWorld()
@@ -114,3 +119,8 @@ class ScriptedNestWorld:
 
     def close(self) -> None:
         """Do nothing: the world holds no resources."""
+
+
+def scripted_world(seed: int, limits: ProcessLimits | None) -> ScriptedNestWorld:
+    """Return a scripted world. It draws no random numbers and has no process."""
+    return ScriptedNestWorld()

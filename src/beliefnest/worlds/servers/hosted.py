@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from typing import Self
 
 from beliefnest.errors import BodyError
 from beliefnest.worlds.minecraft.channel import Channel
@@ -33,6 +34,20 @@ class HostedWorld(RealtimeWorld):
         super().__init__(seed, limits)
         self._address = address
         self._paused = False
+
+    @classmethod
+    def of(cls, name: str, seed: int, limits: ProcessLimits | None = None) -> Self:
+        """Return the world of a name, such as `embedded://127.0.0.1:25565`.
+
+        Raises:
+            InputError: The name contains no valid address.
+        """
+        return cls(ListenAddress.parse(name), seed, limits)
+
+    @property
+    def host(self) -> Self:
+        """The world itself; see `RealtimePlay`."""
+        return self
 
     @property
     def address(self) -> str:

@@ -81,3 +81,12 @@ class ListenAddress:
     def __str__(self) -> str:
         host = f"[{self.host}]" if ":" in self.host else self.host
         return f"{host}:{self.port}"
+
+
+def listening(listen: int | str | None) -> str:
+    """Return the name of the world that people join at a port, or HOST:PORT; None: Minecraft's.
+
+    Raises:
+        InputError: The value is neither.
+    """
+    return ListenAddress.of(DEFAULT_PORT if listen is None else listen).world

@@ -2,13 +2,14 @@
 
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping
+from typing import Self
 
 from beliefnest.errors import InputError
 from beliefnest.world.frames import Snapshot
 from beliefnest.worlds.minecraft.embedded import EmbeddedBody, EmbeddedWorld, NodeWorld
 from beliefnest.worlds.minecraft.exhibits import Exhibit, Plot, Shown
 from beliefnest.worlds.process_limits import ProcessLimits
-from beliefnest.worlds.protocol import Sink
+from beliefnest.worlds.protocol import Sink, SpeechHost
 
 _REALITY = "/"
 
@@ -44,6 +45,16 @@ class RealtimeWorld(NodeWorld):
         super().__init__(seed, limits)
         self._beliefs = EmbeddedWorld(seed, limits)
         self._invited: frozenset[str] = frozenset()
+
+    @property
+    def realtime(self) -> Self:
+        """The world itself; see `World`."""
+        return self
+
+    @property
+    def host(self) -> SpeechHost | None:
+        """The process that people join; None: a server elsewhere."""
+        return None
 
     @property
     @abstractmethod

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Self
 
 from beliefnest.errors import BodyError, WorldError
 from beliefnest.worlds.minecraft.channel import Channel
@@ -48,6 +49,15 @@ class MinecraftWorld(RealtimeWorld):
     ) -> None:
         super().__init__(seed, limits)
         self._address, self.origin = address, address.at
+
+    @classmethod
+    def of(cls, name: str, seed: int, limits: ProcessLimits | None = None) -> Self:
+        """Return the world of an address, such as `minecraft://localhost:25565`.
+
+        Raises:
+            InputError: The address is malformed.
+        """
+        return cls(ServerAddress.parse(name), seed, limits)
 
     @property
     def players(self) -> frozenset[str]:

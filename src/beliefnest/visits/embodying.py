@@ -14,12 +14,11 @@ from beliefnest.nest.acting.placement import BodySpace
 from beliefnest.nest.past.embodiable import with_chests
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import TimelineKey
+from beliefnest.visits.layout import Layout, Standing
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import AIR
 from beliefnest.world.values import AgentState, Position, block_at
-from beliefnest.worlds.by_name import realtime_of
 from beliefnest.worlds.minecraft.exhibits import Exhibit, Plot, Shown, display_names, origin_of
-from beliefnest.worlds.protocol import World
 from beliefnest.worlds.servers.realtime import RealtimeWorld
 
 _REALITY: BeliefPath = ()
@@ -49,7 +48,7 @@ class _Embodied:
 class Embodying:
     """Beliefs of a nest that stand in Minecraft."""
 
-    def __init__(self, recording: Recording, world: World) -> None:
+    def __init__(self, recording: Recording, world: RealtimeWorld) -> None:
         self._recording = recording
         self._world = world
         self._standing: dict[BeliefPath, _Embodied] = {}
@@ -67,10 +66,9 @@ class Embodying:
                 "the real world stands in Minecraft already, so it cannot be embodied; "
                 "nest.layout() says where it stands"
             )
-        world = self._realtime()
-        self._show(world, path, state)
-        if not world.shows_reality:
-            self._show(world, _REALITY, AIR)
+        self._show(path, state)
+        if not self._world.shows_reality:
+            self._show(_REALITY, AIR)
 
     def end(self, path: BeliefPath) -> None:
         """Remove a simulator from Minecraft."""
@@ -86,8 +84,7 @@ class Embodying:
             exhibit = standing.exhibit
             if exhibit is None or exhibit.lost:
                 shown, _ = self._shown(path, standing)
-                world = self._realtime()
-                standing.exhibit = world.open_exhibit(path_text(path), standing.plot, shown)
+                standing.exhibit = self._world.open_exhibit(path_text(path), standing.plot, shown)
             elif when != standing.when:
                 exhibit.show(*self._shown(path, standing))
             standing.when = when
@@ -97,32 +94,29 @@ class Embodying:
         for standing in self._standing.values():
             standing.when = None
 
-    def plots(self) -> Mapping[BeliefPath, Plot]:
-        """Return the plots of the real world and all embodied simulators, by path.
+    def layout(self) -> Layout:
+        """Return the places of the real world and of all embodied simulators in Minecraft."""
+        plots = {path: each.plot for path, each in self._standing.items()}
+        reality = plots.pop(_REALITY, None) or self._plot(_REALITY, 0)
+        lags = self._world.lags() if self._standing else {}
+        return Layout(
+            Standing(
+                path_text(path),
+                *plot.corners,
+                plot.origin,
+                "/tp {} {} {}".format(*plot.stand),
+                lags.get(path_text(path), 0),
+            )
+            for path, plot in {_REALITY: reality, **plots}.items()
+        )
 
-        Empty in a world without plots.
-        """
-        world = realtime_of(self._world)
-        if world is None:
-            return {}
-        standing = {path: each.plot for path, each in self._standing.items()}
-        reality = standing.pop(_REALITY, None) or self._plot(_REALITY, 0, world)
-        return {_REALITY: reality, **standing}
-
-    def lags(self) -> Mapping[BeliefPath, int]:
-        """Return by path the greatest delay of shown changes, in ticks."""
-        if not self._standing:
-            return {}
-        lags = self._realtime().lags()
-        return {path: lags.get(path_text(path), 0) for path in self._standing}
-
-    def _show(self, world: RealtimeWorld, path: BeliefPath, unknown: int) -> None:
+    def _show(self, path: BeliefPath, unknown: int) -> None:
         before = self._standing.get(path)
         if before is not None:
             before.unknown, before.when = unknown, None
         else:
-            number = 0 if path == _REALITY else self._free_number(world)
-            self._standing[path] = self._planned(world, path, number, unknown)
+            number = 0 if path == _REALITY else self._free_number()
+            self._standing[path] = self._planned(path, number, unknown)
         try:
             self.keep_up()
         except BaseException:
@@ -130,26 +124,24 @@ class Embodying:
                 del self._standing[path]
             raise
 
-    def _planned(
-        self, world: RealtimeWorld, path: BeliefPath, number: int, unknown: int
-    ) -> _Embodied:
+    def _planned(self, path: BeliefPath, number: int, unknown: int) -> _Embodied:
         agents = self._recording.agents
         names: Mapping[str, str] = {name: name for name in agents}
         if number:
             others = [name for each in self._standing.values() for name in each.names.values()]
-            names = display_names(agents, number, {*agents, *others, *world.players})
-        return _Embodied(self._plot(path, number, world), names, unknown)
+            names = display_names(agents, number, {*agents, *others, *self._world.players})
+        return _Embodied(self._plot(path, number), names, unknown)
 
-    def _free_number(self, world: RealtimeWorld) -> int:
+    def _free_number(self) -> int:
         taken = {standing.plot.origin for standing in self._standing.values()}
         box, number = self._recording.box, 1
-        while origin_of(number, box, world.origin) in taken:
+        while origin_of(number, box, self._world.origin) in taken:
             number += 1
         return number
 
-    def _plot(self, path: BeliefPath, number: int, world: RealtimeWorld) -> Plot:
+    def _plot(self, path: BeliefPath, number: int) -> Plot:
         box = self._recording.box
-        x, z = origin = origin_of(number, box, world.origin)
+        x, z = origin = origin_of(number, box, self._world.origin)
         stand = self._stand(self._recording.state(path))
         return Plot(box, origin, (stand[0] + x, stand[1], stand[2] + z))
 
@@ -213,13 +205,3 @@ class Embodying:
         standing = self._standing.pop(path, None)
         if standing is not None and standing.exhibit is not None:
             standing.exhibit.close()
-
-    def _realtime(self) -> RealtimeWorld:
-        world = realtime_of(self._world)
-        if world is None:
-            raise InputError(
-                "nobody can visit a belief in this world, because it does not run in real time; "
-                "open the nest with realtime=True, listen=25565, or on a server with "
-                'world="minecraft://HOST:PORT"'
-            )
-        return world

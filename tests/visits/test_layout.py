@@ -78,7 +78,7 @@ def play_of_a_person():
 
 
 def test_the_example_of_the_page_runs(capsys):
-    page = (Path(__file__).parents[3] / "docs" / "visiting.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "visiting.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     exec(compile(example.replace("listen=25565", "listen=0"), "visiting.md", "exec"), {})
     (printed,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)

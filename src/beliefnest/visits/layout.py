@@ -2,9 +2,6 @@
 
 from dataclasses import dataclass
 
-from beliefnest.errors import InputError
-from beliefnest.nest.acting.embodying import Embodying
-from beliefnest.world.paths import path_text
 from beliefnest.world.values import Position
 
 
@@ -41,31 +38,6 @@ class Layout(tuple[Standing, ...]):
             f"{each.path:{width}}  {_corner(each.low)} to {_corner(each.high)}  {each.command}"
             for each in self
         )
-
-
-def layout_of(embodying: Embodying) -> Layout:
-    """Return the places of the real world and of all embodied simulators in Minecraft.
-
-    Raises:
-        InputError: The real world does not run in real time, so nobody can visit it.
-    """
-    plots = embodying.plots()
-    if not plots:
-        raise InputError(
-            "nothing stands where people could go, because this world does not run in real "
-            "time; open the nest with realtime=True, listen=25565, or on a server"
-        )
-    lags = embodying.lags()
-    return Layout(
-        Standing(
-            path_text(path),
-            *plot.corners,
-            plot.origin,
-            "/tp {} {} {}".format(*plot.stand),
-            lags.get(path, 0),
-        )
-        for path, plot in plots.items()
-    )
 
 
 def _corner(position: Position) -> str:

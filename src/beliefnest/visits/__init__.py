@@ -1,0 +1,1 @@
+"""Beliefs that stand in Minecraft for people to visit."""
