@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import beliefnest as bn
 from beliefnest.llm import Connection, Model, Sampling, ask_for_program, open_model
-from beliefnest.programs import skills
 from beliefnest.prompts import built_in_template
+from beliefnest.skills import skills
 
 WISH = "Get a diamond from a chest."
 ROUNDS = 3

@@ -17,7 +17,7 @@ _LONGEST = (
     "tests/studies/test_models.py",
     "tests/studies/test_study.py",
     "tests/semantics/test_chunks.py",
-    "tests/adapters/inspect_ai/",
+    "tests/inspect/",
     "tests/cli/test_pictures.py",
     "tests/cli/test_run.py",
     "tests/nest/acting/test_lives.py",

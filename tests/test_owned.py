@@ -298,7 +298,7 @@ def test_imagined_histories_are_refused() -> None:
 
 
 def test_environments_are_refused() -> None:
-    from beliefnest.adapters.pettingzoo import parallel_env
+    from beliefnest.env import parallel_env
 
     env = parallel_env("sally-anne", world="scripted")
     with closing(env):

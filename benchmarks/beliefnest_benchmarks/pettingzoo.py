@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from beliefnest.adapters.pettingzoo import parallel_env, vector_env
+from beliefnest.env import parallel_env, vector_env
 from beliefnest_benchmarks.figures import Metric
 
 __all__ = ["measure"]

@@ -40,9 +40,9 @@ RUN_BY = {
     ("export.md", "jsonl"): "timeline/test_trace.py",
     ("filters.md", "jinja"): "prompts/test_rendering.py",
     ("filters.md", "python"): "docs/test_nest_pages.py",
-    ("frames.md", "python"): "adapters/dataframes/test_tables.py",
+    ("frames.md", "python"): "frames/test_tables.py",
     ("imagine.md", "python"): "docs/test_imagine_page.py",
-    ("inspect.md", "python"): "adapters/inspect_ai/test_tasks.py",
+    ("inspect.md", "python"): "inspect/test_tasks.py",
     ("large-worlds.md", "python"): "docs/test_nest_pages.py",
     ("looking.md", "python"): "docs/test_looking_page.py",
     ("minds.md", "python"): "docs/test_minds_page.py",
@@ -51,7 +51,7 @@ RUN_BY = {
     ("participants.md", "python"): "docs/test_participants_page.py",
     ("people.md", "javascript"): "worlds/servers/test_people.py",
     ("people.md", "python"): "worlds/servers/test_people.py",
-    ("pettingzoo.md", "python"): "adapters/pettingzoo/test_environment.py",
+    ("pettingzoo.md", "python"): "env/test_environment.py",
     ("programs.md", "python"): "docs/test_nest_pages.py",
     ("psychologist.md", "python"): "docs/test_psychologist_page.py",
     ("python.md", "python"): "docs/test_nest_pages.py",
@@ -64,7 +64,7 @@ RUN_BY = {
     ("teaming.md", "python"): "docs/test_teaming_page.py",
     ("timelines.md", "python"): "docs/test_nest_pages.py",
     ("tutorial.md", "python"): "docs/test_tutorial.py",
-    ("visiting.md", "python"): "nest/face/test_layout.py",
+    ("visiting.md", "python"): "visits/test_layout.py",
 }
 """Page and language to the test that runs its blocks."""
 SHELLS = {"bash", "console", "sh"}

@@ -3,9 +3,9 @@
 from tests.noninterference.doors import door
 from tests.noninterference.pairs import BOX, Played
 
-from beliefnest.adapters.pettingzoo.bounds import SpaceBounds
-from beliefnest.adapters.pettingzoo.order import KINDS, KnownOrder
 from beliefnest.belief.plain import belief_json
+from beliefnest.env.bounds import SpaceBounds
+from beliefnest.env.order import KINDS, KnownOrder
 from beliefnest.world.values import Box
 
 _BOUNDS = SpaceBounds(Box.between(*BOX), dict.fromkeys(KINDS, 40), ("hello",))

@@ -6,10 +6,10 @@ from tests.noninterference.doors import door
 from tests.noninterference.environment_doors import _BOUNDS
 from tests.noninterference.pairs import AGENTS, Played
 
-from beliefnest.adapters.pettingzoo.actions import Calls
-from beliefnest.adapters.pettingzoo.flat import ActorMind, FlatActions
-from beliefnest.adapters.pettingzoo.order import KINDS, KnownOrder
-from beliefnest.adapters.pettingzoo.rendering import line, picture
+from beliefnest.env.actions import Calls
+from beliefnest.env.flat import ActorMind, FlatActions
+from beliefnest.env.order import KINDS, KnownOrder
+from beliefnest.env.rendering import line, picture
 from beliefnest.world.paths import parse_path, path_text, paths_below
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.footpaths import InReach, Near

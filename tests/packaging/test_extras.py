@@ -36,7 +36,7 @@ def test_what_is_missing_is_told_with_its_command(tmp_path, monkeypatch, package
     importlib.import_module("pandas")
     for name in list(sys.modules):
         # A module of the package that another test imported is found without its package.
-        if name.startswith(("beliefnest.inspect", "beliefnest.adapters.", f"{package}.")):
+        if name.startswith(("beliefnest.inspect", "beliefnest.env.", f"{package}.")):
             monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(MissingExtraError, match=rf'pip install "beliefnest\[{extra}\]"'):

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import beliefnest as bn
-from beliefnest.programs import skills
+from beliefnest.skills import skills
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 

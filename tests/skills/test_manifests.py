@@ -1,6 +1,6 @@
 """Skills as models read of them and as worlds run them."""
 
-from beliefnest.programs import skills
+from beliefnest.skills import skills
 from beliefnest.worlds.scripted.skills import SKILLS
 
 

@@ -1,3 +1,8 @@
-"""Scenarios, suites and episodes as tasks of Inspect AI (extra `inspect`)."""
+"""Scenarios and suites as tasks of Inspect AI (extra `inspect`); see `registry.py`."""
 
-import beliefnest.adapters.inspect_ai  # noqa: F401  # refuses to be imported without the extra
+from importlib.util import find_spec
+
+from beliefnest.errors import MissingExtraError
+
+if find_spec("inspect_ai") is None:
+    raise MissingExtraError("tasks of Inspect AI need inspect_ai", "inspect")

@@ -14,7 +14,7 @@ from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import parse_path
 
 if TYPE_CHECKING:  # The page lies above; see `view`.
-    from beliefnest.adapters.notebook import PageView
+    from beliefnest.episodes.notebook import PageView
     from beliefnest.minds.inference import Inference
 
 

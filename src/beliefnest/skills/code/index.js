@@ -8,7 +8,7 @@
  * - `cost`: name of its price in fuel (`COST` of sandbox/policy/kinds.js); `call` if left out
  * - `parameters` in order: `name`, `type`, `description`; `default` as in the signature; `aim` if the argument is the
  *   target of the skill (a position or the name of an agent): `walks` if the agent walks there, `uses` if it uses what is
- *   there; `action`: the parts of a structured action (adapters/pettingzoo/actions.py) from which the argument is made,
+ *   there; `action`: the parts of a structured action (env/actions.py) from which the argument is made,
  *   or the value that it always has there
  * - `check(context, ...args)` returns the arguments for `run`, or fails; the scripted world reads it as well, so that it
  *   uses no more of the bot than `username`, `players` and `registry`. Left out, `run` gets the arguments as they are

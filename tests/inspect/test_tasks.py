@@ -18,7 +18,7 @@ from beliefnest.scenarios.judging import NOT_ANSWERED
 
 pytestmark = pytest.mark.extra("inspect_ai")
 
-GUIDE = Path(__file__).parents[3] / "docs" / "inspect.md"
+GUIDE = Path(__file__).parents[2] / "docs" / "inspect.md"
 
 MODEL = """
 from inspect_ai import eval
@@ -404,7 +404,7 @@ def test_a_question_of_a_suite_is_a_sample_with_its_container_as_target(run, tmp
 
 
 def test_why_a_program_failed_stands_in_the_explanation_of_an_episode():
-    from beliefnest.adapters.inspect_ai.episodes import _line
+    from beliefnest.inspect.episodes import _line
 
     done = {"agent": "ann", "program": "x()", "ended": "failed", "reason": "line 1: no x"}
     assert _line(0, done) == "round 1, ann: x() (failed: line 1: no x)"

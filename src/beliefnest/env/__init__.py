@@ -9,10 +9,10 @@ from beliefnest.errors import InputError, MissingExtraError
 if TYPE_CHECKING:  # Imported when an environment is made.
     from pettingzoo import AECEnv
 
-    from beliefnest.adapters.pettingzoo.bounds import Phrases
-    from beliefnest.adapters.pettingzoo.environment import BeliefEnv, EnvironmentOptions
-    from beliefnest.adapters.pettingzoo.playing import Instances
-    from beliefnest.adapters.pettingzoo.vector import BeliefVectorEnv
+    from beliefnest.env.bounds import Phrases
+    from beliefnest.env.environment import BeliefEnv, EnvironmentOptions
+    from beliefnest.env.playing import Instances
+    from beliefnest.env.vector import BeliefVectorEnv
     from beliefnest.episodes.task import Task
     from beliefnest.nest.face.nest import Nest
     from beliefnest.scenarios.scenario import Scenario
@@ -153,8 +153,8 @@ def vector_env(scenario: "str | Scenario | Task", copies: int, **options: Any) -
 def _classes() -> "tuple[type[BeliefEnv], type[EnvironmentOptions], type[BeliefVectorEnv]]":
     """Import the classes that need PettingZoo."""
     try:
-        from beliefnest.adapters.pettingzoo.environment import BeliefEnv, EnvironmentOptions
-        from beliefnest.adapters.pettingzoo.vector import BeliefVectorEnv
+        from beliefnest.env.environment import BeliefEnv, EnvironmentOptions
+        from beliefnest.env.vector import BeliefVectorEnv
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("pettingzoo", "gymnasium"):
             raise
@@ -170,7 +170,7 @@ def _loaded(
     round_ticks: int | None,
 ) -> "Scenario | Instances":
     """Return a scenario without a goal, or else the instances of a task."""
-    from beliefnest.adapters.pettingzoo.playing import Instances
+    from beliefnest.env.playing import Instances
     from beliefnest.episodes.task import Task
     from beliefnest.scenarios.rules import GoalEntry
     from beliefnest.scenarios.scenario import Scenario

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.adapters.pettingzoo.order import (
+from beliefnest.belief.view import State
+from beliefnest.env.order import (
     BLOCK_CLASSES,
     KINDS,
     KnownOrder,
@@ -19,7 +20,6 @@ from beliefnest.adapters.pettingzoo.order import (
     block_classes,
     moved_state,
 )
-from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from beliefnest.adapters.pettingzoo.bounds import ArrayShape, SpaceBounds
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.node_memory import check_depth, check_room
+from beliefnest.env.bounds import ArrayShape, SpaceBounds
 from beliefnest.errors import InputError
 from beliefnest.world.memory import MEGABYTE
 

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.adapters.pettingzoo.actions import (
+from beliefnest.belief.view import State
+from beliefnest.env.actions import (
     KIND_OF_PART,
     SPEECH,
     Calls,
     NotKnownError,
     index_of,
 )
-from beliefnest.adapters.pettingzoo.order import BLOCK_CLASSES, PLACED, Things, block_classes
-from beliefnest.belief.view import State
+from beliefnest.env.order import BLOCK_CLASSES, PLACED, Things, block_classes
 from beliefnest.episodes.policies.candidates import said
 from beliefnest.errors import InputError
 from beliefnest.skills.calls import Call

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from beliefnest.adapters.pettingzoo.bounds import Phrases, ThingsLayout
-from beliefnest.adapters.pettingzoo.order import placed_states
+from beliefnest.env.bounds import Phrases, ThingsLayout
+from beliefnest.env.order import placed_states
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.registry import Registry
 

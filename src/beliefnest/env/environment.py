@@ -10,18 +10,18 @@ import numpy.typing as npt
 from gymnasium import spaces
 from pettingzoo import ParallelEnv
 
-from beliefnest.adapters.pettingzoo.acting import Acting, ActionState, ProgramActing, SkillActing
-from beliefnest.adapters.pettingzoo.actions import MOST_ITEMS, Calls, NamedAction, NotKnownError
-from beliefnest.adapters.pettingzoo.bounds import ArrayShape, Phrases, SpaceBounds, ThingsLayout
-from beliefnest.adapters.pettingzoo.flat import ActorMind, FlatActions
-from beliefnest.adapters.pettingzoo.layout import layout_of
-from beliefnest.adapters.pettingzoo.order import KnownOrder, Things
-from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
-from beliefnest.adapters.pettingzoo.rendering import line, picture
-from beliefnest.adapters.pettingzoo.room import check_arrays, check_nested
-from beliefnest.adapters.pettingzoo.saving import Choice, SavedEpisode, check_no_options
 from beliefnest.belief.plain import belief_json
 from beliefnest.belief.view import State
+from beliefnest.env.acting import Acting, ActionState, ProgramActing, SkillActing
+from beliefnest.env.actions import MOST_ITEMS, Calls, NamedAction, NotKnownError
+from beliefnest.env.bounds import ArrayShape, Phrases, SpaceBounds, ThingsLayout
+from beliefnest.env.flat import ActorMind, FlatActions
+from beliefnest.env.layout import layout_of
+from beliefnest.env.order import KnownOrder, Things
+from beliefnest.env.playing import Instances, TaskActing
+from beliefnest.env.rendering import line, picture
+from beliefnest.env.room import check_arrays, check_nested
+from beliefnest.env.saving import Choice, SavedEpisode, check_no_options
 from beliefnest.episodes.agent_view import AgentView, Brief
 from beliefnest.episodes.policies.candidates import items_of
 from beliefnest.episodes.task import Task
@@ -164,7 +164,7 @@ class BeliefSpace(spaces.Space[dict[str, Any]]):
 class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no type information
     """A scenario or task in which agents act and get their own beliefs as observations.
 
-    Create one with `beliefnest.adapters.pettingzoo.parallel_env`, which explains the arguments.
+    Create one with `beliefnest.env.parallel_env`, which explains the arguments.
 
     Attributes:
         possible_agents: Agents that can act, sorted.

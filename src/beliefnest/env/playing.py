@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import msgspec
 
-from beliefnest.adapters.pettingzoo.acting import ActionState, JointStep
-from beliefnest.adapters.pettingzoo.actions import SPEECH
+from beliefnest.env.acting import ActionState, JointStep
+from beliefnest.env.actions import SPEECH
 from beliefnest.episodes.agent_view import GO_ON, AgentView
 from beliefnest.episodes.decided import latest_end
 from beliefnest.episodes.episode import Episode

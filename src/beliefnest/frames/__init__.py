@@ -5,11 +5,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.adapters.dataframes.sources import FrameSource, RecordedCell, cells_of, study_of
 from beliefnest.belief.plain import belief_json
 from beliefnest.episodes.measures import Measures
 from beliefnest.episodes.telling import round_rows, told_episode
 from beliefnest.errors import InputError
+from beliefnest.frames.sources import FrameSource, RecordedCell, cells_of, study_of
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.plainframe import Typed, plain_frame

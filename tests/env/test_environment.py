@@ -287,7 +287,7 @@ def test_without_the_library_it_says_what_to_install():
 
 
 def test_the_guide_does_what_it_says(capsys):
-    guide = Path(__file__).parents[3] / "docs" / "pettingzoo.md"
+    guide = Path(__file__).parents[2] / "docs" / "pettingzoo.md"
     code = "\n".join(re.findall(r"```python\n(.*?)```", guide.read_text("utf-8"), re.DOTALL))
     exec(compile(code, "guide", "exec"), {"__name__": "guide"})
     printed = capsys.readouterr().out.splitlines()

@@ -6,8 +6,8 @@ import pytest
 from tests.profiles import few_by_day
 
 import beliefnest as bn
-from beliefnest.adapters.pettingzoo.actions import Call
 from beliefnest.env import parallel_env
+from beliefnest.env.actions import Call
 from beliefnest.nest.acting.imagination import Performer
 from beliefnest.scenarios.scenario import Scenario
 

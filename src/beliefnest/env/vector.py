@@ -9,8 +9,8 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, concatenate, create_empty_array, iterate
 
-from beliefnest.adapters.pettingzoo.environment import BeliefEnv, BeliefSpace
-from beliefnest.adapters.pettingzoo.saving import check_no_options
+from beliefnest.env.environment import BeliefEnv, BeliefSpace
+from beliefnest.env.saving import check_no_options
 from beliefnest.errors import InputError
 from beliefnest.world.seeds import checked_seed
 

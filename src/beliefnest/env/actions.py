@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from beliefnest.adapters.pettingzoo.bounds import Phrases, SpaceBounds
-from beliefnest.adapters.pettingzoo.order import Things
+from beliefnest.env.bounds import Phrases, SpaceBounds
+from beliefnest.env.order import Things
 from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
 from beliefnest.skills.calls import Call, callables
 from beliefnest.skills.manifests import Parameter

@@ -8,15 +8,15 @@ from inspect_ai.dataset import Sample
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import TaskState
 
-from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
-from beliefnest.adapters.inspect_ai.task_parts import (
+from beliefnest.errors import InputError
+from beliefnest.inspect.metrics import CLUSTER, metrics_by
+from beliefnest.inspect.task_parts import (
     finish_of,
     score_of,
     several_files,
     task_of,
     without_answer,
 )
-from beliefnest.errors import InputError
 from beliefnest.llm.reading_answers import read_answer
 from beliefnest.studies.cells import variation_id
 from beliefnest.suites.stories.data import BatteryItem, StoryItems

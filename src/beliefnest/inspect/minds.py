@@ -13,7 +13,8 @@ from inspect_ai.model import ChatMessageUser
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
-from beliefnest.adapters.inspect_ai.metrics import (
+from beliefnest.errors import InputError
+from beliefnest.inspect.metrics import (
     CLUSTER,
     beliefs_r,
     desires_r,
@@ -22,13 +23,12 @@ from beliefnest.adapters.inspect_ai.metrics import (
     rated,
     stderr_of_epochs,
 )
-from beliefnest.adapters.inspect_ai.task_parts import (
+from beliefnest.inspect.task_parts import (
     finish_of,
     several_files,
     task_of,
     without_answer,
 )
-from beliefnest.errors import InputError
 from beliefnest.llm.messages import Finish
 from beliefnest.llm.reading_numbers import NumbersReading
 from beliefnest.nest.face.nest import Nest

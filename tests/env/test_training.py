@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-NOTEBOOK = Path(__file__).parents[3] / "docs" / "notebooks" / "training.ipynb"
+NOTEBOOK = Path(__file__).parents[2] / "docs" / "notebooks" / "training.ipynb"
 
 
 def test_the_trained_policy_of_the_notebook_raises_the_lift() -> None:

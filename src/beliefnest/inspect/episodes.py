@@ -14,18 +14,18 @@ from inspect_ai.model import GenerateConfig, ModelOutput, get_model
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
-from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
-from beliefnest.adapters.inspect_ai.task_parts import (
-    finish_of,
-    messages_of,
-    score_of,
-    several_files,
-)
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
 from beliefnest.episodes.task import Task as Played
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError
+from beliefnest.inspect.metrics import CLUSTER, metrics_by
+from beliefnest.inspect.task_parts import (
+    finish_of,
+    messages_of,
+    score_of,
+    several_files,
+)
 from beliefnest.llm.messages import Answer, Message, Sampling, Usage
 from beliefnest.studies.cells import variation_id
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.adapters.pettingzoo.test_doors import SPOTS, scene
+from tests.env.test_doors import SPOTS, scene
 
 import beliefnest as bn
 from beliefnest.env import parallel_env, vector_env

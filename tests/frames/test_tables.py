@@ -8,7 +8,7 @@ import pytest
 import beliefnest as bn
 from beliefnest import frames
 
-GUIDE = Path(__file__).parents[3] / "docs" / "frames.md"
+GUIDE = Path(__file__).parents[2] / "docs" / "frames.md"
 
 
 @pytest.fixture

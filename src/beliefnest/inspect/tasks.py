@@ -9,9 +9,10 @@ from inspect_ai.dataset import Sample
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
-from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
-from beliefnest.adapters.inspect_ai.samples import ScenarioStage, requests_of
-from beliefnest.adapters.inspect_ai.task_parts import (
+from beliefnest.errors import InputError
+from beliefnest.inspect.metrics import CLUSTER, metrics_by
+from beliefnest.inspect.samples import ScenarioStage, requests_of
+from beliefnest.inspect.task_parts import (
     finish_of,
     messages_of,
     score_of,
@@ -19,7 +20,6 @@ from beliefnest.adapters.inspect_ai.task_parts import (
     task_of,
     without_answer,
 )
-from beliefnest.errors import InputError
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.records import probe_json
 from beliefnest.scenarios.sources import read_document

@@ -1,1 +1,0 @@
-"""Adapters: scenarios, runs and studies in the forms of other libraries."""

@@ -1,1 +1,0 @@
-"""Runs and studies as pandas data frames (extra `study`)."""
