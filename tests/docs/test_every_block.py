@@ -41,6 +41,7 @@ RUN_BY = {
     ("filters.md", "jinja"): "prompts/test_rendering.py",
     ("filters.md", "python"): "docs/test_nest_pages.py",
     ("frames.md", "python"): "frames/test_tables.py",
+    ("items.md", "python"): "docs/test_items_page.py",
     ("imagine.md", "python"): "docs/test_imagine_page.py",
     ("inspect.md", "python"): "inspect/test_tasks.py",
     ("large-worlds.md", "python"): "docs/test_nest_pages.py",

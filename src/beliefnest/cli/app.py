@@ -12,6 +12,7 @@ from typer.core import TyperGroup
 from beliefnest.cli.options import (
     CaptureOptions,
     ExportOptions,
+    ItemsOptions,
     Json,
     MethodsFormat,
     ParticipantsOptions,
@@ -323,6 +324,15 @@ def study(options: StudyOptions) -> int:
     from beliefnest.cli.study import run_study
 
     return run_study(options)
+
+
+@app.command(rich_help_panel=_PLAY)
+@with_options(ItemsOptions)
+def items(options: ItemsOptions) -> int:
+    """Write the questions of a study as items of a benchmark; report how balanced they are."""
+    from beliefnest.cli.items import run_items
+
+    return run_items(options)
 
 
 @app.command(rich_help_panel=_PLAY)

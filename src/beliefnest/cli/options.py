@@ -359,6 +359,26 @@ class StudyOptions(ModelOptions):
 
 
 @dataclass(frozen=True, slots=True)
+class ItemsOptions:
+    """Options of `beliefnest items`."""
+
+    study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the set.")]
+    report: Annotated[
+        bool, typer.Option("--report", help="Print balance, and what shortcuts score.")
+    ] = False
+    verify: Annotated[
+        bool, typer.Option("--verify", help="Make the set again, and compare every byte.")
+    ] = False
+    held_out: Annotated[
+        float, typer.Option(metavar="SHARE", help="Share of seeds whose items are held out.")
+    ] = 0.0
+    set_version: Annotated[str, typer.Option(metavar="TEXT", help="Version of the set.")] = "1.0.0"
+    changes: Annotated[str, typer.Option(metavar="TEXT", help="Changes in this version.")] = ""
+    json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
 class ParticipantsOptions:
     """Options of `beliefnest participants`."""
 

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Iterator, Sequence
+from typing import Literal
 
 from beliefnest.belief.view import State
 from beliefnest.nest.face.nest import Nest
@@ -24,6 +25,9 @@ _ELSEWHERE = "another place"
 
 _STORY = "{{ branch | beginning }} {{ branch | story }}"
 
+ProseVerdict = Literal["follows", "differs", "unread"]
+"""Relation of a right answer to what the text alone says; `unread`: the reader cannot tell."""
+
 
 class ProseWarning(ScenarioWarning):
     """Warning that a right answer does not follow from the text of its probe, or is not checked."""
@@ -41,35 +45,41 @@ def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
         probes: Probes with their right answers.
     """
     told = built_in_template("story").text
-    asked = [
-        (number, probe, question, question.believed)
-        for number, probe in enumerate(probes, 1)
-        if probe.path == "/" and probe.template == told
-        for question in probe.questions
-        if question.believed is not None
-    ]
-    story = nest["/"].render(_STORY) if asked else ""
-    for number, probe, question, believed in asked:
+    for number, probe in enumerate(probes, 1):
         name = repr(probe.label) if probe.label else str(number)
-        for fault in _faults(nest, story, question, believed):
-            subject = f"prose {believed.where}{name}"
-            told = f"{believed.where}probe {name}: {fault}"
-            warnings.warn(ProseWarning(told, subject), stacklevel=3)
+        for question in probe.questions if probe.template == told else ():
+            _, fault = check_prose(nest, probe, question)
+            if fault and question.believed is not None:
+                where = question.believed.where
+                warning = ProseWarning(f"{where}probe {name}: {fault}", f"prose {where}{name}")
+                warnings.warn(warning, stacklevel=3)
 
 
-def _faults(nest: Nest, story: str, question: Answers, believed: Believed) -> Iterator[str]:
+def check_prose(nest: Nest, probe: Probe, question: Answers) -> tuple[ProseVerdict, str]:
+    """Compare a right answer with what a reader of the narrator's story alone would answer.
+
+    Args:
+        nest: The nest at the tick of the question.
+        probe: Its probe.
+        question: The question with its right answers.
+
+    Returns:
+        The verdict, and a sentence about what is wrong or not checked; empty: nothing.
+    """
+    believed = question.believed
+    if believed is None or probe.path != "/":
+        return "unread", ""
     right = {_key(each) for each in question.right}
     if believed.kind == "block":
         answer = listed(sorted(map(repr, question.right)), "or")
-        yield (
+        return "unread", (
             f"it is not checked that the right answer {answer} follows from the story, which does "
             "not tell who sees a block; read the story, or ask about an item"
         )
-        return
     try:
-        read = _read(nest, story, believed)
+        read = _read(nest, nest["/"].render(_STORY), believed)
     except UnreadError:
-        return
+        return "unread", ""
     named = {each for names in read for each in names}
     told = {_key(each) for each in named}
     if believed.kind == "item":
@@ -79,15 +89,16 @@ def _faults(nest: Nest, story: str, question: Answers, believed: Believed) -> It
         options = {_key(each) for each in question.options}
         is_named = believed.kind == "agent" and not named <= {_ELSEWHERE, believed.unknown}
         follows = bool(told & right) or (is_named and bool(options) and not told & options)
-    if not follows:
-        said, best = (
-            listed(sorted(map(repr, each)), "or")
-            for each in (question.right, {names[0] for names in read})
-        )
-        yield (
-            f"the right answer {said} does not follow from the story, which says {best}; let the "
-            "story show it, by what is seen or said, or ask otherwise"
-        )
+    if follows:
+        return "follows", ""
+    said, best = (
+        listed(sorted(map(repr, each)), "or")
+        for each in (question.right, {names[0] for names in read})
+    )
+    return "differs", (
+        f"the right answer {said} does not follow from the story, which says {best}; let the "
+        "story show it, by what is seen or said, or ask otherwise"
+    )
 
 
 def _read(nest: Nest, story: str, believed: Believed) -> Sequence[tuple[str, ...]]:

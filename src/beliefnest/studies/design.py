@@ -59,6 +59,7 @@ class Design:
         settings: Settings of requests to models.
         design: Allocation of conditions to variations.
         labels: Labels of groups of scenarios, by the scenario's name or path.
+        balance: Names of shortcuts that are right as often as guesses in the chosen variations.
     """
 
     scenarios: tuple[str, ...]
@@ -77,6 +78,7 @@ class Design:
     settings: ModelSettings = field(default_factory=ModelSettings)
     design: Allocation = "crossed"
     labels: Mapping[str, str] = field(default_factory=dict)
+    balance: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name, values in (("scenarios", self.scenarios), ("models", self.models)):
@@ -146,6 +148,7 @@ class Design:
             else {name: list(values) for name, values in self.variations.items()},
             "conditions": None if self.conditions is None else list(self.conditions),
             **({} if self.design == "crossed" else {"design": self.design}),
+            **({"balance": list(self.balance)} if self.balance else {}),
             **self.setting,
         }
 

@@ -20,16 +20,19 @@ from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.skills.manifests import SkillDetail
 from beliefnest.studies.allocation import LABEL, PARTICIPANT
 from beliefnest.studies.cells import C, Cell, Plan, plan_cells
-from beliefnest.studies.checking import StudyKeyError, is_whole, several
+from beliefnest.studies.checking import StudyKeyError, is_amount, is_whole, several
 from beliefnest.studies.design import Constraint, Design, template_named
 from beliefnest.studies.episode_cells import EpisodeCell, check_player, plan_episodes
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
 from beliefnest.studies.inputs import Inputs
+from beliefnest.studies.items.item_set import ItemSet
+from beliefnest.studies.items.making import made_items, with_balanced_items
+from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
 from beliefnest.studies.jobs import OnStudyProgress, StudyProgress, run_cells
 from beliefnest.studies.list_balance import with_balanced_lists
-from beliefnest.studies.participants.playing import OnItem
+from beliefnest.studies.participants.playing import OnItem, refuse_claims
 from beliefnest.studies.participants.running import (
     Page,
     ShownForm,
@@ -102,6 +105,8 @@ class Study:
             condition; conditions are equally frequent, also for each value of the variations.
             `latin-square`: crossed and divided into lists (column `list`), each of which contains
             every variation once.
+        balance: Names of shortcuts, such as `reality` or `first` (docs/items.md): the largest part
+            of the scenes is played on which each of them is right as often as a guess.
 
     Raises:
         InputError: An argument does not have the right form.
@@ -140,6 +145,7 @@ class Study:
         seeds: Sequence[int] | int = 1,
         help: bool = False,
         design: str = "crossed",
+        balance: Sequence[str] = (),
     ) -> None:
         keys = StudyKeys(
             scenarios=scenarios,
@@ -168,6 +174,7 @@ class Study:
             seeds=seeds,
             help=help,
             design=design,
+            balance=balance,
         )
         self._hold(design_of(keys, _templates(templates), _constraints(constraints)))
 
@@ -235,6 +242,8 @@ class Study:
         plan = plan_cells(design, self._documents, on_variation)
         if design.design == "latin-square":
             plan = with_balanced_lists(plan)
+        if design.balance:
+            plan = with_balanced_items(plan, self._documents, design.balance, design.seed)
         return _told_apart(plan, self._table)
 
     @contextmanager
@@ -407,13 +416,51 @@ class Study:
             write_answers(place.path / "people.csv", found.answers)
         return StudyResult(place), tuple(found.notes)
 
+    def items(
+        self,
+        *,
+        name: str = "items",
+        held_out: float = 0.0,
+        version: str = "1.0.0",
+        changes: str = "",
+        on_item: OnItem | None = None,
+    ) -> ItemSet:
+        """Return the questions of the study as items of a benchmark, with their right answers.
+
+        The scripts are played in the scripted world, without any model. Questions of which several
+        options are right, and those whose story says something else than the nest, are dropped.
+
+        Args:
+            name: Name of the set.
+            held_out: Share of seeds whose items are held out, from 0 to 1.
+            version: Version of the set.
+            changes: What changed in this version.
+            on_item: Function that receives the progress.
+
+        Raises:
+            InputError: An argument is wrong, or the study is one of episodes.
+            ScenarioError: No probe asks a question, or a scenario is wrong.
+            BeliefNestError: A script failed.
+        """
+        if not is_amount(held_out) or held_out >= 1:
+            raise InputError(f"held_out is {quoted(held_out)}; give a share of at least 0, below 1")
+        design, cells = self._scenarios()
+        refuse_claims(design.setting)
+        made = list(made_items(cells, self._documents, on_item or _say_nothing_of_items))
+        return ItemSet(
+            name=name,
+            items=tuple(each for each in made if isinstance(each, ItemRecord)),
+            dropped=tuple(each for each in made if isinstance(each, DroppedQuestion)),
+            held_out=held_out,
+            version=version,
+            changes=changes,
+        )
+
     def _scenarios(self) -> tuple[Design, Sequence[Cell]]:
         """Return design and cells; raise InputError if the study plays episodes."""
         design, plan = self._design, self.plan()
         if not isinstance(design, Design):
-            raise InputError(
-                "participants see scenarios and answer their questions; this study plays episodes"
-            )
+            raise InputError("questions are those of scenarios; this study plays episodes")
         cells = [cell for cell in plan.cells if isinstance(cell, Cell)]
         self._check_valid(plan)
         return design, cells

@@ -14,7 +14,9 @@ from beliefnest.studies.allocation import DESIGNS, Allocation
 from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
 from beliefnest.studies.design import Constraint, Design
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies, listed, seeds_of
+from beliefnest.studies.items.report import FIXED_SOLVERS
 from beliefnest.world.texts import quoted
+from beliefnest.world.words import nearest_or_all
 
 
 class StudyKeys(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -47,6 +49,7 @@ class StudyKeys(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     seeds: Sequence[int] | int = 1
     help: bool = False
     design: str = "crossed"
+    balance: Sequence[str] | str = ()
 
 
 def design_of(
@@ -86,7 +89,20 @@ def design_of(
         settings=_settings(keys),
         design=_allocation(keys.design),
         labels={name: label for label, names in groups for name in names if label},
+        balance=_shortcuts(keys),
     )
+
+
+def _shortcuts(keys: StudyKeys) -> tuple[str, ...]:
+    names = several("balance", keys.balance)
+    for number, name in enumerate(names):
+        if name not in FIXED_SOLVERS:
+            told = f"there is no shortcut {quoted(name)}{nearest_or_all(name, FIXED_SOLVERS)}"
+            raise StudyKeyError(("balance", number), told)
+    if names and keys.design != "crossed":
+        told = f"design {quoted(keys.design)} allocates conditions itself; leave one of them out"
+        raise StudyKeyError("balance", told)
+    return names
 
 
 def labelled_scenarios(entries: object) -> list[tuple[str, tuple[str, ...]]]:
@@ -145,6 +161,7 @@ def _episodes(keys: StudyKeys, constraints: Sequence[Constraint]) -> EpisodeDesi
         "constraints": constraints,
         "claims_from": keys.claims_from,
         "design": "" if keys.design == "crossed" else keys.design,
+        "balance": keys.balance,
     }
     for name, value in foreign.items():
         if value:

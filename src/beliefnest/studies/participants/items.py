@@ -67,7 +67,7 @@ def items_of(cells: Iterable[Cell], documents: Mapping[str, Document]) -> list[I
     for cell in cells:
         questions = tuple(_questions(cell.scenario.probes))
         if questions:
-            item = Item(_name(cell), cell, questions)
+            item = Item(item_name(cell), cell, questions)
             found.setdefault(item.name, item)
     if not found:
         document = next(iter(documents.values()))
@@ -109,7 +109,7 @@ def _questions(probes: Sequence[Probe]) -> Iterator[ItemQuestion]:
                 yield ItemQuestion(f"{number + 1}.{place}", number, asked)
 
 
-def _name(cell: Cell) -> str:
+def item_name(cell: Cell) -> str:
     """Return the name of the item of a cell, which no model, repeat or way of asking affects."""
     key = cell.key
     setting = {name: key.setting[name] for name in ("seed", "world")}

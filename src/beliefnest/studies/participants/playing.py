@@ -21,7 +21,7 @@ from beliefnest.worlds.by_name import Worlds
 OnItem = Callable[[str, int, int], None]
 """Function of a description, the number of items done, and of all items."""
 
-_STORY = "{{ branch | beginning }}\n\n{{ branch | story }}"
+STORY = "{{ branch | beginning }}\n\n{{ branch | story }}"
 """Text that the built-in template `story` shows to models, without the question."""
 
 
@@ -70,23 +70,37 @@ def shown_items(
     Raises:
         BeliefNestError: A script failed; the message names the cell.
     """
-    for item, nest, start in _each_played(items, on_item):
+    for item, nest, start in played_items(items, on_item):
         yield item, [view_of(nest, path, start, shown) for path in item.paths]
 
 
 def judged_items(items: Sequence[Item], on_item: OnItem) -> Iterator[tuple[Item, Judged]]:
     """Play items and yield the right answers of each; arguments and errors as `shown_items`."""
-    for item, nest, _ in _each_played(items, on_item):
+    for item, nest, _ in played_items(items, on_item):
         yield item, _judged(nest, item)
 
 
-def _each_played(items: Sequence[Item], on_item: OnItem) -> Iterator[tuple[Item, Nest, int]]:
-    """Play items; yield each with its nest, which is open until the next item, and first tick."""
+def played_items(
+    items: Sequence[Item], on_item: OnItem, world: str | None = None
+) -> Iterator[tuple[Item, Nest, int]]:
+    """Play items; yield each with its nest, which is open until the next item, and first tick.
+
+    Args:
+        items: The items.
+        on_item: Function that receives the progress.
+        world: Name of the world; None: that of the study.
+
+    Raises:
+        BeliefNestError: A script failed; the message names the cell.
+    """
     with Worlds(0) as worlds:
         renderer = Renderer()
         for number, item in enumerate(items):
             on_item(_title(item), number, len(items))
-            with _played(item, worlds, renderer) as (nest, start):
+            with _played(item, world or item.cell.key.setting["world"], worlds, renderer) as (
+                nest,
+                start,
+            ):
                 yield item, nest, start
 
 
@@ -96,13 +110,13 @@ def _title(item: Item) -> str:
 
 
 @contextmanager
-def _played(item: Item, worlds: Worlds, renderer: Renderer) -> Iterator[tuple[Nest, int]]:
+def _played(
+    item: Item, world: str, worlds: Worlds, renderer: Renderer
+) -> Iterator[tuple[Nest, int]]:
     """Play the script of an item; give its nest and its first tick."""
     key, scenario = item.cell.key, item.cell.scenario
     try:
-        with Nest.open(
-            scenario, key.setting["world"], None, key.seed, worlds, renderer=renderer
-        ) as nest:
+        with Nest.open(scenario, world, None, key.seed, worlds, renderer=renderer) as nest:
             start = nest.tick
             warn_of_scene(scenario)
             nest.play()
@@ -115,7 +129,7 @@ def _played(item: Item, worlds: Worlds, renderer: Renderer) -> Iterator[tuple[Ne
 def view_of(nest: Nest, path: str, start: int, shown: str) -> ParticipantView:
     """Return what participants see of a simulator: `film`, `story` or `both` since a tick."""
     simulator = nest[path]
-    story = simulator.render(_STORY) if shown in ("story", "both") else ""
+    story = simulator.render(STORY) if shown in ("story", "both") else ""
     return ParticipantView(
         path=path,
         owner=simulator.owner,
@@ -141,6 +155,6 @@ def refuse_claims(setting: Mapping[str, Any]) -> None:
     """Raise InputError if a model would have to read claims out of utterances."""
     if "claims_from" in setting:
         raise InputError(
-            "the study reads claims with a model (`claims_from`), and participants are asked "
-            "without any model; leave it out of the study for participants"
+            "the study reads claims with a model (`claims_from`), and its scripts are played here "
+            "without any model; leave it out"
         )

@@ -1,0 +1,98 @@
+"""`beliefnest items`: the questions of a study as a set of benchmark items."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from rich.table import Table
+
+from beliefnest.cli.console import Printed, print_report, progress_on, result_table
+from beliefnest.cli.options import ItemsOptions
+from beliefnest.studies.items.item_set import ItemSet
+from beliefnest.studies.items.report import report_of
+from beliefnest.studies.study import Study
+from beliefnest.world.words import counted
+
+_MOST_DROPPED = 5
+
+
+def run_items(options: ItemsOptions) -> int:
+    """Make a set of items, and write it or compare it with its folder; return the exit status.
+
+    Raises:
+        BeliefNestError: The study or the folder is wrong, or a script failed.
+    """
+    with progress_on(options.study.stem) as on_progress:
+        made = Study.load(options.study).items(
+            name=options.study.stem,
+            held_out=options.held_out,
+            version=options.set_version,
+            changes=options.changes,
+            on_item=on_progress,
+        )
+    differing = made.differences(options.out) if options.verify else []
+    if not options.verify:
+        made.write(options.out)
+    report = report_of(made.items) if options.report else {}
+    told = {
+        "folder": str(options.out),
+        "items": len(made.items),
+        "dropped": len(made.dropped),
+        "differences": differing,
+        **({"report": report} if report else {}),
+    }
+    print_report(told, _parts(options, made, differing, report), as_json=options.json)
+    return int(bool(differing))
+
+
+def _parts(
+    options: ItemsOptions, made: ItemSet, differing: list[str], report: Mapping[str, Any]
+) -> Iterator[Printed]:
+    if report:
+        yield from (_counts(report), _positions(report), _shortcuts(report))
+    for each in made.dropped[:_MOST_DROPPED]:
+        yield f"dropped: {each.scenario}, probe {each.probe}: {each.why}"
+    if len(made.dropped) > _MOST_DROPPED:
+        yield f"and {len(made.dropped) - _MOST_DROPPED} more; all of them are in dropped.jsonl"
+    yield from differing
+    size = ", ".join(f"{counted(len(each), part)}" for part, each in _sizes(made))
+    if not options.verify:
+        yield f"{options.out}: {size}"
+    elif not differing:
+        yield f"{options.out}: {size}; made again with the same bytes"
+
+
+def _sizes(made: ItemSet) -> Iterator[tuple[str, tuple[object, ...]]]:
+    for part, items in made.parts.items():
+        yield "item" if part == "public" else f"{part} item", items
+    yield "dropped question", made.dropped
+
+
+def _counts(report: Mapping[str, Any]) -> Table:
+    table = result_table("items by", "", right=["items"])
+    for name, counts in report["by"].items():
+        table.add_row(name, ", ".join(f"{value}: {n}" for value, n in counts.items()))
+    return table
+
+
+def _positions(report: Mapping[str, Any]) -> Table:
+    table = result_table("options", "right at 1, 2, ...", "same text", "skeletons")
+    same = counted(len(report["same_text"]), "group")
+    skeletons = sum(report["skeletons"].values())
+    for options, places in report["positions"].items():
+        table.add_row(str(options), " ".join(map(str, places)), same, str(skeletons))
+    return table
+
+
+def _shortcuts(report: Mapping[str, Any]) -> Table:
+    table = result_table("shortcut", "items", "answered", "accuracy", "95 %", "chance", "at chance")
+    for row in report["shortcuts"]:
+        table.add_row(
+            row["shortcut"].replace("_", " "),
+            str(row["items"]),
+            str(row["answered"]),
+            f"{row['accuracy']:.0%}",
+            f"{row['low']:.0%} to {row['high']:.0%}",
+            f"{row['chance']:.0%}",
+            "yes" if row["at_chance"] else "NO",
+        )
+    return table

@@ -1,0 +1,1 @@
+"""Benchmark items: the questions of a study with exact right answers, and sets of them."""

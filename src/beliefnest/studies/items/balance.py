@@ -1,0 +1,97 @@
+"""Choice of the variations of a study of which shortcuts are right as often as a guess."""
+
+import random
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.studies.items.record import ItemRecord
+from beliefnest.studies.items.report import FIXED_SOLVERS, OF_BELIEFS
+
+_EXACT = 1e-6
+_Excess = tuple[float, ...]
+"""Number of right answers above what guesses have, for each shortcut and order."""
+
+
+def balanced_names(
+    made: Mapping[str, Sequence[ItemRecord]], names: Sequence[str], seed: int
+) -> frozenset[str]:
+    """Return the names of most scenes on which shortcuts are right as often as guesses.
+
+    Each shortcut is balanced within each order.
+
+    Args:
+        made: Items by the name of their scene: variation and condition.
+        names: Names of shortcuts.
+        seed: Seed of the choice among equal scenes.
+
+    Raises:
+        InputError: There are no such scenes; the message has the numbers.
+        MissingExtraError: SciPy is not installed.
+    """
+    orders = sorted({each.order for items in made.values() for each in items})
+    dimensions = [(name, order) for name in names for order in orders]
+    scenes: dict[_Excess, list[str]] = defaultdict(list)
+    for scene, items in made.items():
+        scenes[tuple(_excess(items, *dimension) for dimension in dimensions)].append(scene)
+    kinds = sorted(scenes)
+    counts = _largest(kinds, [len(scenes[kind]) for kind in kinds])
+    if not counts.any():
+        raise InputError(_impossible(made, dimensions))
+    chosen: set[str] = set()
+    for kind, count in zip(kinds, counts, strict=True):
+        chosen.update(random.Random(f"{seed} {kind}").sample(sorted(scenes[kind]), int(count)))
+    return frozenset(chosen)
+
+
+def _excess(items: Sequence[ItemRecord], name: str, order: int) -> float:
+    """Return how many more answers of a shortcut are right than those of guesses."""
+    return sum(
+        float(answer == each.right) - (each.chance or 0.0)
+        for each, answer in _answers(items, name, order)
+    )
+
+
+def _answers(
+    items: Iterable[ItemRecord], name: str, order: int
+) -> Iterator[tuple[ItemRecord, str]]:
+    """Yield the questions of an order that a shortcut answers, with its answers."""
+    for each in items:
+        if each.order == order and each.options and (each.chain or name not in OF_BELIEFS):
+            answer = FIXED_SOLVERS[name](each)
+            if answer is not None:
+                yield each, answer
+
+
+def _largest(kinds: Sequence[_Excess], counts: Sequence[int]) -> Any:
+    """Return how many scenes of each kind to take, so that all excesses add up to 0."""
+    try:
+        from scipy.optimize import Bounds, LinearConstraint, milp
+    except ImportError:
+        raise MissingExtraError("balanced items need scipy", "stats") from None
+    found = milp(
+        -np.ones(len(kinds)),
+        integrality=np.ones(len(kinds)),
+        bounds=Bounds(0, counts),
+        constraints=LinearConstraint(np.array(kinds).T, -_EXACT, _EXACT),
+    )
+    return np.rint(found.x).astype(int)
+
+
+def _impossible(
+    made: Mapping[str, Sequence[ItemRecord]], dimensions: Sequence[tuple[str, int]]
+) -> str:
+    told = []
+    for name, order in dimensions:
+        every = [each for items in made.values() for each in items]
+        answers = list(_answers(every, name, order))
+        right = sum(answer == each.right for each, answer in answers)
+        if abs(_excess(every, name, order)) > _EXACT:
+            told.append(f"{name} is right in {right} of {len(answers)} questions of order {order}")
+    return (
+        "no part of the variations has these shortcuts at chance: "
+        f"{'; '.join(told)}; vary what the answers depend on, or add conditions"
+    )

@@ -1,0 +1,147 @@
+"""Items of a study: its scripts are played without any model, and each question is recorded."""
+
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from beliefnest.errors import InputError, ScenarioError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.expected_answers import Answers
+from beliefnest.scenarios.naming import Naming
+from beliefnest.scenarios.probing import naming_for, resolved
+from beliefnest.scenarios.prose_check import check_prose
+from beliefnest.scenarios.questioning import shuffled
+from beliefnest.studies.cells import Cell, Plan, digest, variation_id
+from beliefnest.studies.checking import StudyKeyError
+from beliefnest.studies.items.balance import balanced_names
+from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
+from beliefnest.studies.items.shortcuts import shortcuts
+from beliefnest.studies.participants.items import Item, ItemQuestion, item_name, items_of
+from beliefnest.studies.participants.playing import STORY, OnItem, played_items
+from beliefnest.world.paths import parse_path
+from beliefnest.world.words import listed, titled
+
+
+def made_items(
+    cells: Sequence[Cell], documents: Mapping[str, Document], on_item: OnItem
+) -> Iterator[ItemRecord | DroppedQuestion]:
+    """Play scripts in the scripted world, and yield each of their questions.
+
+    Args:
+        cells: Cells of the study's plan.
+        documents: Documents of its scenarios.
+        on_item: Function that receives the progress.
+
+    Raises:
+        ScenarioError: No probe asks a question.
+        BeliefNestError: A script failed; the message names the cell.
+    """
+    for item, nest, _ in played_items(items_of(cells, documents), on_item, "scripted"):
+        for question in item.questions:
+            yield _made(nest, item, question)
+
+
+def with_balanced_items(
+    plan: Plan[Cell], documents: Mapping[str, Document], shortcuts: Sequence[str], seed: int
+) -> Plan[Cell]:
+    """Return the part of a plan on whose scenes shortcuts are right as often as guesses.
+
+    Raises:
+        StudyKeyError: There is no such part.
+        BeliefNestError: As `made_items`.
+    """
+    made: dict[str, list[ItemRecord]] = {}
+    for item, nest, _ in played_items(items_of(plan.cells, documents), _say_nothing, "scripted"):
+        found = (_made(nest, item, each) for each in item.questions)
+        made[item.name] = [each for each in found if isinstance(each, ItemRecord)]
+    try:
+        names = balanced_names(made, shortcuts, seed)
+    except InputError as error:
+        raise StudyKeyError("balance", str(error)) from None
+    return replace(plan, cells=tuple(each for each in plan.cells if item_name(each) in names))
+
+
+def _say_nothing(what: str, done: int, total: int) -> None:
+    """Ignore progress."""
+
+
+def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | DroppedQuestion:
+    key, probe = item.cell.key, item.probe(question)
+    place = question.asked.question
+    name = probe.label or question.id
+    try:
+        probe = resolved(nest, probe)
+        (asked,) = (each for each in probe.questions if each.question == place)
+        verdict, told = check_prose(nest, probe, asked)
+        fault = told if verdict == "differs" else ""
+        if asked.options and len(asked.right) > 1:
+            fault = f"several options are right: {listed([repr(each) for each in asked.right])}"
+    except ScenarioError as error:
+        fault = str(error)
+    if fault:
+        return DroppedQuestion(
+            scenario=key.scenario,
+            condition=key.condition,
+            factors=_factors(key.variation),
+            probe=name,
+            question=place,
+            why=fault,
+        )
+    naming, believed = naming_for(nest, probe), asked.believed
+    path = probe.path if believed is None else believed.path
+    chain = parse_path(path, nest.agents)
+    text, options = nest[probe.path].render(STORY), shuffled(asked, key.seed)
+    return ItemRecord(
+        id=digest([item.name, question.id])[:16],
+        text=text,
+        question=place,
+        options=options,
+        right=asked.right[0],
+        kind="given" if believed is None else believed.kind,
+        order=max(len(chain), len(parse_path(probe.path, nest.agents))),
+        path=path,
+        told_by=probe.path,
+        chain=chain,
+        chance=1 / len(options) if options else None,
+        family=item.cell.label or key.scenario,
+        scenario=key.scenario,
+        condition=key.condition,
+        variation=variation_id(key.scenario, dict(key.variation)),
+        factors=_factors(key.variation),
+        probe=name,
+        seed=key.seed,
+        tick=nest.tick,
+        skeleton=_skeleton(f"{text}\n{place}", nest, asked, naming),
+        checked=verdict,
+        shortcuts=shortcuts(nest, asked, naming, options, text),
+    )
+
+
+def _factors(values: Mapping[str, Any]) -> dict[str, str]:
+    return {n: v if isinstance(v, str) else json.dumps(v) for n, v in values.items()}
+
+
+def _skeleton(text: str, nest: Nest, asked: Answers, naming: Naming) -> str:
+    """Return a digest of a text whose names are replaced by their order of appearance."""
+    names = {*map(titled, nest.agents), *naming.all, *asked.options, *asked.right, *_items(nest)}
+    wanted = sorted((each for each in names if each), key=lambda each: (-len(each), each))
+    numbers: dict[str, int] = {}
+
+    def number(match: re.Match[str]) -> str:
+        return f"<{numbers.setdefault(match[0].casefold(), len(numbers))}>"
+
+    # "a bone" and "an apple" are told alike.
+    text = re.sub(r"\ban\b", "a", text)
+    any_name = "|".join(map(re.escape, wanted))
+    return digest(re.sub(rf"(?<!\w)(?:{any_name})(?!\w)", number, text, flags=re.IGNORECASE))[:16]
+
+
+def _items(nest: Nest) -> Iterable[str]:
+    """Yield the names of all items, as stories write them."""
+    state = nest["/"].state
+    inside = [each.items for each in state.containers.values()]
+    held = (*inside, *(each.inventory for each in state.agents.values()))
+    yield from (name.replace("_", " ") for names in held for name in names)

@@ -1,0 +1,287 @@
+"""Items of a study: texts, right answers, what shortcuts answer; sets, their parts and balance."""
+
+import json
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+from beliefnest.errors import InputError, ScenarioError
+from beliefnest.scenarios.content import ScenarioWarning
+from beliefnest.studies.items.item_set import ItemSet
+from beliefnest.studies.items.record import ItemRecord
+from beliefnest.studies.items.report import report_of, shortcut_rows
+
+SCENARIO = """
+name: boxes
+box: [[-6, -1, -6], [6, 2, 6]]
+blocks:
+  - {block: smooth_stone, fill: [[-6, -1, -6], [6, -1, 6]]}
+  - {block: stone_bricks, fill: [[2, 0, 1], [6, 2, 1]]}
+parameters:
+  to: {default: right, values: [left, right]}
+containers:
+  - {label: left box, at: [-2, 0, -4], block: "chest[facing=south]", items: {bone: 1}}
+  - {label: right box, at: [2, 0, -4], block: "chest[facing=south]"}
+agents:
+  sally: {position: [-1.5, 0, -2.5], facing: north}
+  anne: {position: [0.5, 0, -0.5], facing: north}
+perception: {max_visible_distance: 20}
+script:
+  - {agent: sally, program: "await getItemFromChest(bot, new Vec3(-2, 0, -4), {bone: 1})"}
+  - agent: sally
+    program: >
+      await depositItemIntoChest(bot, "${to}" === "left" ? new Vec3(-2, 0, -4)
+      : new Vec3(2, 0, -4), {bone: 1})
+  - label: away
+    agent: sally
+    program: await goToPosition(bot, new Vec3(5, 0, 4), 0);
+  - agent: anne
+    program: |
+      const places = [new Vec3(-2, 0, -4), new Vec3(2, 0, -4)]
+      const [from, into] = "${to}" === "left" ? places : places.reverse()
+      await getItemFromChest(bot, from, {bone: 1})
+      await depositItemIntoChest(bot, into, {bone: 1})
+probes:
+  - label: sally
+    path: /
+    template: story
+    expect:
+      answers:
+        question: Where will Sally look for the bone?
+        options: [left box, right box]
+        right: {path: /sally, item: bone}
+  - label: both
+    path: /
+    template: story
+    expect:
+      answers:
+        - question: Where is the bone?
+          options: [left box, right box]
+          right: {path: /, item: bone}
+        - question: Where does Anne think that Sally will look for the bone?
+          options: [left box, right box]
+          right: {path: /anne/sally, item: bone}
+        - question: What is in the right box, as Sally believes?
+          right: {path: /sally, container: [2, 0, -4]}
+conditions:
+  1: {description: Sally does not see it.}
+  2:
+    description: Sally sees it.
+    script:
+      away: {program: "await goToPosition(bot, new Vec3(5, 0, -5), 0);"}
+"""
+STUDY = "scenarios: [boxes.yaml]\nvariations: {to: [left, right]}\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    place = tmp_path_factory.mktemp("items")
+    (place / "boxes.yaml").write_text(SCENARIO, encoding="utf-8")
+    (place / "study.yaml").write_text(STUDY, encoding="utf-8")
+    return place
+
+
+@pytest.fixture(scope="module")
+def made(folder):
+    return bn.Study.load(folder / "study.yaml").items(name="boxes")
+
+
+def item(made: ItemSet, condition: int, to: str, question: str) -> ItemRecord:
+    (found,) = (
+        each
+        for each in made.items
+        if each.condition == condition
+        and each.factors["to"] == to
+        and each.question.startswith(question)
+    )
+    return found
+
+
+def test_items_have_what_their_readers_need(made):
+    found = item(made, 1, "right", "Where will Sally")
+    assert (found.right, found.order, found.path, found.chain) == (
+        "right box",
+        1,
+        "/sally",
+        ("sally",),
+    )
+    assert sorted(found.options) == ["left box", "right box"]
+    assert (found.kind, found.chance, found.family, found.told_by) == ("item", 0.5, "boxes", "/")
+    assert found.text.startswith("This is a story about Anne and Sally.")
+    assert found.checked == "follows"
+    assert len(made.items) == 16
+    assert made.dropped == ()
+    assert len({each.id for each in made.items}) == 16
+
+
+@pytest.mark.parametrize(
+    ("condition", "question", "right", "shortcuts"),
+    [
+        (1, "Where will Sally", "right box", {"reality": "left box", "lower_order": "left box"}),
+        (2, "Where will Sally", "left box", {"reality": "left box", "lower_order": "left box"}),
+        (1, "Where does Anne", "right box", {"reality": "left box", "lower_order": "right box"}),
+        (1, "Where is", "left box", {"reality": "left box"}),
+    ],
+)
+def test_shortcuts_answer_from_lower_beliefs_and_mentions(
+    made, condition, question, right, shortcuts
+):
+    """Sally puts the bone into the right box, and Anne moves it into the left one."""
+    found = item(made, condition, "right", question)
+    assert found.right == right
+    told = {
+        name: found.shortcuts[name]
+        for name in ("reality", "lower_order")
+        if name in found.shortcuts
+    }
+    assert told == shortcuts
+    mentioned = [found.text.rfind(option) for option in ("left box", "right box")]
+    last = ("left box", "right box")[mentioned.index(max(mentioned))]
+    assert (found.shortcuts["first"], found.shortcuts["last"]) == ("left box", last)
+
+
+def test_answers_in_words_have_no_options_and_no_chance(made):
+    found = item(made, 2, "left", "What is in")
+    assert (found.options, found.chance, found.right) == ((), None, "bone")
+    assert found.shortcuts["reality"] == "bone"
+
+
+def test_models_and_worlds_change_no_item(made, folder):
+    more = bn.Study(
+        [str(folder / "boxes.yaml")],
+        models=["offline", "oracle"],
+        variations={"to": ["left", "right"]},
+        world="scripted",
+        repeats=1,
+    ).items()
+    assert [each.text for each in more.items] == [each.text for each in made.items]
+
+
+def test_questions_with_several_right_options_are_dropped(tmp_path):
+    """Two more bones stay in the left box."""
+    more = SCENARIO.replace("items: {bone: 1}", "items: {bone: 3}", 1)
+    text = more.replace("[left box, right box]", "[left box, right box, barrel]")
+    (tmp_path / "boxes.yaml").write_text(text, encoding="utf-8")
+    study = bn.Study([str(tmp_path / "boxes.yaml")], variations={"to": ["left"]}, conditions=[1])
+    with pytest.warns(ScenarioWarning):
+        made = study.items()
+    (why,) = (each.why for each in made.dropped if each.question == "Where is the bone?")
+    assert why == "several options are right: 'left box' and 'right box'"
+    assert not any(each.question == "Where is the bone?" for each in made.items)
+
+
+def test_a_set_is_made_again_byte_by_byte(folder, tmp_path, capsys):
+    command = ["items", str(folder / "study.yaml"), "-o", str(tmp_path / "set")]
+    assert run_command_line([*command, "--held-out", "0.5"]) == 0
+    lines = (tmp_path / "set" / "items.jsonl").read_text(encoding="utf-8").splitlines()
+    hidden = tmp_path / "set" / "held-out" / "items.jsonl"
+    kept = hidden.read_text(encoding="utf-8").splitlines()
+    seeds = [{json.loads(line)["seed"] for line in part} for part in (lines, kept)]
+    assert seeds[0].isdisjoint(seeds[1])
+    assert len(lines) + len(kept) == 16
+    assert run_command_line([*command, "--held-out", "0.5", "--verify"]) == 0
+    assert "made again with the same bytes" in capsys.readouterr().out
+    hidden.write_text("\n".join([*kept[:2], kept[2].replace("box", "bag"), *kept[3:]]), "utf-8")
+    assert run_command_line([*command, "--held-out", "0.5", "--verify"]) == 1
+    assert "held-out/items.jsonl: line 3 differs" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--verify"], "there is no set of items"),
+        (["--held-out", "1"], "give a share of at least 0, below 1"),
+    ],
+)
+def test_wrong_use_of_the_command(folder, tmp_path, capsys, arguments, told):
+    study = str(folder / "study.yaml")
+    assert run_command_line(["items", study, "-o", str(tmp_path / "none"), *arguments]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_folder_with_something_else_is_kept(folder, tmp_path, capsys):
+    (tmp_path / "thesis.txt").write_text("mine", encoding="utf-8")
+    assert run_command_line(["items", str(folder / "study.yaml"), "-o", str(tmp_path)]) == 2
+    assert "holds no set of items" in capsys.readouterr().err
+    assert [each.name for each in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def records(*answers: tuple[str, str | None]) -> list[ItemRecord]:
+    """Items with the options `a` and `b`; of each the right answer, and that of `reality`."""
+    return [
+        ItemRecord(
+            id=str(number),
+            text=f"text {number} {right}",
+            question="Where?",
+            options=("a", "b"),
+            right=right,
+            kind="item",
+            order=1,
+            path="/x",
+            told_by="/",
+            chain=("x",),
+            chance=0.5,
+            family=f"family {number % 2}",
+            scenario="s",
+            condition=None,
+            variation="v",
+            factors={},
+            probe="p",
+            seed=number,
+            tick=0,
+            skeleton=str(number),
+            checked="follows",
+            shortcuts={"reality": reality},
+        )
+        for number, (right, reality) in enumerate(answers)
+    ]
+
+
+def test_a_shortcut_is_scored_against_chance():
+    rows = {row["shortcut"]: row for row in shortcut_rows(records(*[("a", "a")] * 20))}
+    assert (rows["reality"]["accuracy"], rows["reality"]["at_chance"]) == (1.0, False)
+    assert rows["first_option"]["accuracy"] == 1.0
+    assert rows["last_option"]["accuracy"] == 0.0
+    # Options of one length say nothing: a guess.
+    assert (rows["longest_option"]["answered"], rows["longest_option"]["accuracy"]) == (0, 0.5)
+    # Texts name the right option.
+    assert rows["words"]["accuracy"] == 1.0
+    mixed = [("a", "a"), ("a", "b"), ("b", "b"), ("b", "a")] * 5
+    rows = {row["shortcut"]: row for row in shortcut_rows(records(*mixed))}
+    assert (rows["reality"]["accuracy"], rows["reality"]["at_chance"]) == (0.5, True)
+
+
+def test_a_report_counts_places_and_copies():
+    found = report_of([*records(("a", "a"), ("b", "a")), *records(("a", "b"))])
+    assert found["positions"] == {2: [2, 1]}
+    assert found["options"]["a"] == {"asked": 3, "right": 2}
+    assert found["same_text"] == [["0", "0"]]
+    assert found["by"]["family"] == {"family 0": 2, "family 1": 1}
+
+
+@pytest.mark.extra("scipy")
+def test_scenes_are_chosen_on_which_shortcuts_are_at_chance(folder):
+    pytest.importorskip("scipy")
+    scenario = str(folder / "boxes.yaml")
+    values = {"to": ["left", "right"]}
+    balanced = bn.Study([scenario], variations=values, balance=["lower_order"], conditions=[1, 2])
+    with pytest.raises(
+        InputError, match=r"lower_order is right in \d+ of \d+ questions of order 2"
+    ):
+        balanced.plan()
+    reality = bn.Study([scenario], variations=values, balance=["reality"])
+    rows = {
+        row["shortcut"]: row
+        for row in shortcut_rows([i for i in reality.items().items if i.options])
+    }
+    assert rows["reality"]["accuracy"] == 0.5
+
+
+def test_unknown_shortcuts_are_refused(folder):
+    text = STUDY + "balance: [realty]\n"
+    (folder / "wrong.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(
+        ScenarioError, match=r"wrong.yaml:3: balance.*'realty'.*did you mean 'reality'"
+    ):
+        bn.Study.load(folder / "wrong.yaml")
