@@ -31,6 +31,7 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
         TickError,
         TooLargeError,
         UnknownNameError,
+        WorkerError,
         WorldError,
     )
     from beliefnest.minds.imagining.histories import History, Imagined
@@ -98,6 +99,7 @@ __all__ = [
     "TickError",
     "TooLargeError",
     "UnknownNameError",
+    "WorkerError",
     "WorldError",
     "__version__",
     "simplex_grid",

@@ -90,6 +90,12 @@ class BodyLostError(BodyError):
     """The process of a body died; the requested acts count as not done."""
 
 
+class WorkerError(BeliefNestError):
+    """A process that works for this one has ended unexpectedly."""
+
+    exit_status = 3
+
+
 class ModelError(BeliefNestError):
     """A language model is not available, refused, or gave no usable answer."""
 

@@ -11,6 +11,7 @@ if TYPE_CHECKING:  # Imported when an environment is made.
 
     from beliefnest.env.bounds import Phrases
     from beliefnest.env.environment import BeliefEnv, EnvironmentOptions
+    from beliefnest.env.learners import LearnerEnv
     from beliefnest.env.playing import Instances
     from beliefnest.env.vector import BeliefVectorEnv
     from beliefnest.episodes.task import Task
@@ -18,7 +19,7 @@ if TYPE_CHECKING:  # Imported when an environment is made.
     from beliefnest.scenarios.scenario import Scenario
     from beliefnest.timeline.run_records import Senses
 
-__all__ = ["aec_env", "parallel_env", "vector_env"]
+__all__ = ["aec_env", "parallel_env", "sb3_env", "vector_env"]
 
 
 def parallel_env(
@@ -135,19 +136,50 @@ def aec_env(scenario: "str | Scenario | Task", **options: Any) -> "AECEnv[str, A
     return parallel_to_aec(env)
 
 
-def vector_env(scenario: "str | Scenario | Task", copies: int, **options: Any) -> "BeliefVectorEnv":
-    """Return copies of an environment as a vector environment of Gymnasium, in this process.
+def vector_env(
+    scenario: "str | Scenario | Task", copies: int, *, processes: int = 1, **options: Any
+) -> "BeliefVectorEnv":
+    """Return copies of an environment as a vector environment of Gymnasium.
 
     Args:
         scenario: As for `parallel_env`.
         copies: Number of copies; each counts once for each of its agents.
+        processes: Number of processes that step the copies; 1: this one alone. The observations,
+            rewards and infos are the same.
         options: Arguments of `parallel_env`.
 
     Raises:
-        InputError: `copies` is below 1, or the observations are no arrays.
+        InputError: `copies` or `processes` is below 1 or no whole number, there are more processes
+            than copies, or the observations are no arrays.
     """
     *_, vector = _classes()
-    return vector(lambda: parallel_env(scenario, **options), copies)
+    return vector(functools.partial(parallel_env, scenario, **options), copies, processes)
+
+
+def sb3_env(
+    scenario: "str | Scenario | Task", copies: int = 1, *, processes: int = 1, **options: Any
+) -> "LearnerEnv":
+    """Return copies of an environment for stable-baselines3: `PPO`, or `MaskablePPO` with masks.
+
+    Args:
+        scenario: As for `parallel_env`.
+        copies: Number of copies; each counts once for each of its agents.
+        processes: Number of processes that step the copies.
+        options: Arguments of `parallel_env`; `actions` is `flat` if it is left out.
+
+    Raises:
+        MissingExtraError: stable-baselines3 is not installed.
+        InputError: As for `vector_env`.
+    """
+    flat = {"actions": "flat", **options}
+    env = vector_env(scenario, copies, processes=processes, **flat)
+    try:
+        from beliefnest.env.learners import LearnerEnv
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] != "stable_baselines3":
+            raise
+        raise MissingExtraError("sb3_env needs stable-baselines3", "sb3") from None
+    return LearnerEnv(env)
 
 
 def _classes() -> "tuple[type[BeliefEnv], type[EnvironmentOptions], type[BeliefVectorEnv]]":

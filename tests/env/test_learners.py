@@ -1,0 +1,48 @@
+"""Learners of stable-baselines3 take environments as they are, with masks."""
+
+from contextlib import closing
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beliefnest.env import sb3_env, vector_env
+
+pytest.importorskip("stable_baselines3", reason="it is large, and tested at night")
+pytestmark = pytest.mark.extra("stable_baselines3", "sb3_contrib")
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+@pytest.mark.parametrize("task", ["joint-lift", "help-find", "kitchen"])
+def test_ppo_and_maskable_ppo_train(task: str, processes: int) -> None:
+    from sb3_contrib import MaskablePPO
+    from stable_baselines3 import PPO
+
+    for kind in (PPO, MaskablePPO):
+        with closing(sb3_env(task, 2, processes=processes, max_steps=2)) as env:
+            learner = kind("MultiInputPolicy", env, n_steps=4, batch_size=8, n_epochs=1, seed=3)
+            assert learner.learn(8).num_timesteps == 8
+
+
+def test_an_episode_that_ends_is_followed_by_the_next_one_in_the_same_step() -> None:
+    given: dict[str, Any] = {"actions": "flat", "max_steps": 2}
+    nothing = np.zeros(2, np.int64)
+    with closing(sb3_env("joint-lift", 2, **given)) as env:
+        env.seed(5)
+        first = env.reset()
+        env.step(nothing)
+        observations, _, over, infos = env.step(nothing)
+        assert over.tolist() == [True, True]
+        assert [each["TimeLimit.truncated"] for each in infos] == [True, True]
+        assert (
+            np.stack(env.env_method("action_masks")).tolist()
+            == observations["action_mask"].tolist()
+        )
+        with closing(vector_env("joint-lift", 2, **given)) as other:
+            np.testing.assert_equal(first, other.reset(seed=5)[0])
+            other.step(nothing)
+            last, *_ = other.step(nothing)
+            for row, info in enumerate(infos):
+                for name, seen in info["terminal_observation"].items():
+                    assert np.array_equal(seen, last[name][row])
+            np.testing.assert_equal(observations, other.step(nothing)[0])
