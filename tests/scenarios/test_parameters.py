@@ -60,3 +60,96 @@ def test_an_expression_without_an_end_is_not_shown_either(tmp_path, shown):
             description(tmp_path, parameters, shown)
     with pytest.raises(ScenarioError, match=told):
         description(tmp_path, f"\n  asked: {{default: {shown!r}}}\n")
+
+
+PROGRAM = """
+  thing: {default: diamond, values: [diamond, bone]}
+  count: {default: 1, range: [1, 3]}
+script: [{agent: ann, program: "PROGRAM"}]
+"""
+
+
+def played(tmp_path, program, **values):
+    parameters = PROGRAM.replace("PROGRAM", program)
+    file = tmp_path / "room.yaml"
+    file.write_text(SCENE.replace("QUESTION", "${thing} ${count}") + parameters)
+    scenario = bn.Scenario.load(str(file), parameters=values or None)
+    return scenario.setting.script[0].programs["ann"]
+
+
+@pytest.mark.parametrize(
+    "program", ["say(bot, 'a ${thign}')", "${thign}", "say(bot, 'it`s') // ${thign}"]
+)
+def test_a_misspelt_name_in_a_program_is_refused(tmp_path, program):
+    with pytest.raises(ScenarioError, match="program: 'thign' names 'thign'; did you mean 'thing'"):
+        played(tmp_path, program)
+
+
+@pytest.mark.parametrize("hole", ["name", "bot.health", "thign"])
+def test_template_literals_of_programs_keep_their_holes(tmp_path, hole):
+    assert played(tmp_path, f"say(bot, `${{{hole}}} ${{thing}}`)") == (
+        f"say(bot, `${{{hole}}} diamond`)"
+    )
+
+
+def test_a_value_does_not_bring_a_misspelt_name_into_a_program(tmp_path):
+    parameters = """
+  asked: {default: "where ${thign} is"}
+  thing: {default: key}
+script: [{agent: ann, program: "say(bot, '${asked} ${thing}')"}]
+"""
+    with pytest.raises(ScenarioError, match=r"program: would hold '\$\{thign\}'"):
+        description(tmp_path, parameters, "${thing}")
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ({"thing": "bnoe"}, 'thing: \'bnoe\' is not allowed; allowed are "diamond", "bone"'),
+        ({"count": 4}, "count: 4 is not allowed; give a number from 1 to 3"),
+        ({"count": "two"}, "count: 'two' is not allowed; give a number from 1 to 3"),
+        ({"thing": None}, 'thing: None is not allowed; allowed are "diamond"'),
+    ],
+)
+def test_given_values_are_among_those_that_are_allowed(tmp_path, values, told):
+    with pytest.raises(ScenarioError, match=f"room.yaml:[0-9]+: parameters.{told}"):
+        played(tmp_path, "think(bot, 'hm')", **values)
+    assert played(tmp_path, "say(bot, '${thing}')", thing="bone", count=3) == "say(bot, 'bone')"
+
+
+@pytest.mark.parametrize(
+    ("more", "warned"),
+    [
+        ("  spare: {default: 1}\n", True),
+        ("  spare: {default: 1}\nconstraints: [spare <= count]\n", False),
+        ("  spare: {default: 1}\nconditions: {1: {description: 'a ${spare}'}}\n", False),
+        ("  spare: {default: ann}\nplaces: {'${spare}': [1, 1, 1]}\n", False),
+        ("  spare: {default: 1}\n  thing: {default: '${spare}'}\n", False),
+    ],
+)
+def test_a_parameter_that_is_used_nowhere_is_warned_of(tmp_path, more, warned):
+    file = tmp_path / "room.yaml"
+    declared = "\n  count: {default: 1}\n" + more
+    file.write_text(SCENE.replace("QUESTION", "a ${count}") + declared)
+    told = [str(each) for each in bn.Scenario.load(str(file)).warnings]
+    assert [each for each in told if "parameters.spare: is used nowhere" in each] == told * warned
+    assert bool(told) is (warned or "thing" in more)
+
+
+def test_values_are_given_by_name(tmp_path):
+    for values, told in ((["thing"], "give values by name"), ({3: 3}, "no parameter 3; declared")):
+        with pytest.raises(ScenarioError, match=told):
+            bn.Scenario.load("lie", parameters=values)
+
+
+@pytest.mark.parametrize(
+    ("declared", "told"),
+    [
+        ("values: diamond", r"values: expected a list such as \[\.\.\.\], got 'diamond'"),
+        ("range: [1, a]", r"range\[1\]: expected an integer, or a number, got 'a'"),
+        ("valeus: [1]", "valeus: unknown key; did you mean 'values'"),
+    ],
+)
+def test_a_declaration_of_a_wrong_form_says_what_to_write(tmp_path, declared, told):
+    with pytest.raises(ScenarioError, match=rf"room\.yaml:9: parameters\.asked\.{told}"):
+        description(tmp_path, f"\n  asked: {{default: 1, {declared}}}\n")

@@ -35,6 +35,8 @@ LAST_ERROR = "$$LAST_ERROR$$"
 
 
 _MARKERS = {LAST_CODE: "{{ last_code }}", LAST_ERROR: "{{ last_error }}"}
+_OPTIONAL = ("defined", "undefined", "default", "d")
+"""Tests and filters that a variable without a value passes."""
 _MOST_TEMPLATES = 64
 """Greatest number of compiled templates that a renderer keeps."""
 
@@ -65,6 +67,39 @@ def render(
         InputError: An installed filter cannot be used.
     """
     return Renderer(filters).render(template, branch, variables)
+
+
+@functools.lru_cache(maxsize=_MOST_TEMPLATES)
+def check_variables(template: Template, given: tuple[str, ...]) -> None:
+    """Refuse a variable of a template that has no value, without rendering it.
+
+    A variable that the template sets, or tests for being defined, may be missing. Variables are not
+    checked if a filter is none of the built-in and installed ones: a nest may be given it.
+
+    Args:
+        template: The template.
+        given: Names of variables, apart from those that `render` always sets.
+
+    Raises:
+        TemplateError: The template cannot be parsed, or a variable has no value.
+    """
+    environment = _ReadingEnvironment(_default_filters())
+    try:
+        tree = environment.parse(_with_markers(template.text))
+        missing = meta.find_undeclared_variables(tree)
+    except jinja2.TemplateAssertionError:
+        return
+    except jinja2.TemplateSyntaxError as error:
+        raise TemplateError(f"{template.name}, line {error.lineno}: {error.message}") from None
+    known = {*given, "branch", "last_code", "last_error"}
+    names = list(tree.find_all(nodes.Name))
+    set_inside = {name.name for name in names if name.ctx != "load"}
+    tests = [each for each in tree.find_all((nodes.Test, nodes.Filter)) if each.name in _OPTIONAL]
+    optional = {each.node.name for each in tests if isinstance(each.node, nodes.Name)}
+    missing -= {*known, *set_inside, *optional, *environment.globals}
+    for name in names:
+        if name.name in missing:
+            _refuse(template.name, name.lineno, "variable", name.name, known)
 
 
 @functools.cache

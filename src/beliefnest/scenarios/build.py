@@ -158,8 +158,7 @@ class _Builder:
     def warnings(self, probes: tuple[Probe, ...]) -> tuple[ScenarioWarning, ...]:
         """Return warnings about the file."""
         found = scene_warnings(self._document, self._file, self._snapshot, probes)
-        older = self._document.older
-        return (*found, ScenarioWarning(older)) if older else found
+        return (*found, *map(ScenarioWarning, self._document.notes))
 
     def _unique(self, initial: Sequence[InitialBelief]) -> frozenset[str]:
         """Return the unique items; refuse those that world or initial beliefs contradict."""
@@ -190,7 +189,7 @@ class _Builder:
             for key in ("acts_in", "agent", "task"):
                 if getattr(entry, key) is None:
                     raise self._document.fault(path, f"the key {quoted(key)} is missing")
-        return Probe(
+        probe = Probe(
             path=entry.path,
             acts_in=entry.path if entry.acts_in is None else entry.acts_in,
             agent=(believers[-1] if believers else "") if entry.agent is None else entry.agent,
@@ -204,6 +203,9 @@ class _Builder:
             template_name=entry.template or "template",
             where=self._document.key_at(path),
         )
+        with self._document.naming((*path, "template")):
+            probe.check_template()
+        return probe
 
     def _inferring(self, path: KeyPath, entry: ProbeEntry) -> Probe:
         """Return a probe that infers in place of asking a model."""

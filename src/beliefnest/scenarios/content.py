@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.nest.past.setting import Setting
+from beliefnest.prompts.rendering import check_variables
 from beliefnest.prompts.templates import Template, built_in_template
 from beliefnest.scenarios.expected import Expectation, Expected
 from beliefnest.scenarios.expected_answers import Answers
@@ -12,6 +13,12 @@ from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.timeline.run_records import Senses
 from beliefnest.world.values import Position
+
+PROGRAM_VARIABLES = ("task", "instructed")
+"""Variables of templates of requests for programs, as `probing` sets them."""
+
+QUESTION_VARIABLES = ("task", "question", "options", "reason", "places")
+"""Variables of templates of questions, as `questioning` sets them."""
 
 
 class ScenarioWarning(UserWarning):
@@ -71,6 +78,17 @@ class Probe:
         if self.template is None:
             return built_in_template(usual)
         return Template(self.template_name, self.template)
+
+    def check_template(self) -> None:
+        """Refuse a variable of the template that a request of the probe does not set.
+
+        Raises:
+            TemplateError: There is one, or the template cannot be parsed.
+        """
+        if self.template is not None and self.asks_for_program:
+            check_variables(self.template_or(""), PROGRAM_VARIABLES)
+        if self.template is not None and self.questions:
+            check_variables(self.template_or(""), QUESTION_VARIABLES)
 
     @property
     def questions(self) -> tuple[Answers, ...]:

@@ -56,7 +56,7 @@ class Document:
         text: Text of the file; empty if there is none.
         templates: Texts of templates that are kept with the document, by name; others are in
             files.
-        older: Line that says what to write for older spellings of facts; empty: there are none.
+        notes: Lines that warn of what it says, such as facts in an older spelling.
     """
 
     source: str
@@ -64,7 +64,7 @@ class Document:
     folder: Path
     text: str = ""
     templates: Mapping[str, str] = field(default_factory=dict)
-    older: str = ""
+    notes: tuple[str, ...] = ()
 
     def fault(self, path: KeyPath, message: str) -> ScenarioError:
         """Return an error that names file, line and key."""

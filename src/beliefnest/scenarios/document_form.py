@@ -105,9 +105,30 @@ def _fault(document: Document, error: str, form: _Form) -> ScenarioError:
     match = _FAULT.fullmatch(error)
     if match is None:
         return document.fault((), shortened(error, _LONGEST_FAULT))
-    what = match["what"]
     steps = [step.groupdict() for step in FAULT_STEP.finditer(match["path"] or "$")]
-    path = _locate(document.root, steps, error, form)
+    return _fault_at(document, _locate(document.root, steps, error, form), match)
+
+
+def entry_fault(document: Document, path: KeyPath, error: str) -> ScenarioError:
+    """Return the error about an entry of a document that was validated by itself.
+
+    Args:
+        document: The document.
+        path: Place of the entry.
+        error: Message of the validation.
+    """
+    match = _FAULT.fullmatch(error)
+    if match is None:
+        return document.fault(path, shortened(error, _LONGEST_FAULT))
+    inner = [
+        step["name"] or int(step["index"]) for step in FAULT_STEP.finditer(match["path"] or "")
+    ]
+    return _fault_at(document, (*path, *inner), match)
+
+
+def _fault_at(document: Document, path: KeyPath, match: re.Match[str]) -> ScenarioError:
+    """Return the error at a place."""
+    what = match["what"]
     if unknown := _UNKNOWN_FIELD.fullmatch(what):
         name = unknown["name"]
         return document.fault((*path, name), f"unknown key{_hint(shortened(name), path)}")

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 
 from beliefnest.errors import InputError
 from beliefnest.world.texts import quoted
+from beliefnest.world.words import nearest_or_all
 
 _LONGEST = 300
 _BINARY: Mapping[type[ast.operator], Callable[..., object]] = {
@@ -94,9 +95,8 @@ def _value(  # noqa: PLR0911
             return value
         case ast.Name(id=name):
             if name not in values:
-                raise InputError(
-                    f"{quoted(text)} names {quoted(name)}; declared: {', '.join(values) or 'none'}"
-                )
+                hint = nearest_or_all(name, [*values] or ["none"], "declared are")
+                raise InputError(f"{quoted(text)} names {quoted(name)}{hint}")
             return values[name]
         case ast.List(elts=parts) | ast.Tuple(elts=parts):
             return [inner(part) for part in parts]

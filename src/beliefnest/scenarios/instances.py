@@ -22,6 +22,7 @@ from beliefnest.perception.percept import gaze_from
 from beliefnest.perception.sight import Geometry, Sight
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, plain
+from beliefnest.scenarios.document_form import entry_fault
 from beliefnest.scenarios.format import InstanceEntry, ParameterEntry, TerrainEntry
 from beliefnest.scenarios.loading import condition_numbers, scenario_in
 from beliefnest.scenarios.parameters import broken_constraint, check_declared, choices, declared_in
@@ -30,7 +31,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Point, Position
-from beliefnest.world.words import counted
+from beliefnest.world.words import counted, nearest_or_all
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH
 
@@ -293,13 +294,12 @@ def _rule(
     """
     path = (_KEY, str(name))
     if name not in declared:
-        known = ", ".join(declared) or "none"
-        raise document.fault(path, f"is no parameter; declared are {known}")
+        hint = nearest_or_all(str(name), [*declared] or ["none"], "declared are")
+        raise document.fault(path, f"is no parameter{hint}")
     try:
         rule = msgspec.convert(plain(node) or {}, InstanceEntry)
     except msgspec.ValidationError as error:
-        keys = ", ".join(InstanceEntry.__struct_fields__)
-        raise document.fault(path, f"{error}; rules are {keys}") from None
+        raise entry_fault(document, path, str(error)) from None
     for other in rule.differs_from:
         if other not in declared:
             raise document.fault((*path, "differs_from"), f"{quoted(other)} is no parameter")

@@ -128,9 +128,9 @@ def allowed_values(path: Iterable[str | int]) -> list[str]:
     return sorted({str(value) for place in _places(path) for value in place.get("enum", [])})
 
 
-def wanted_form(path: Iterable[str | int]) -> str:
-    """Return in words what stands at a place of a scenario file, with examples of lists."""
-    forms = (_words(each) for each in _places(path) if each.get("type", "null") != "null")
+def wanted_form(path: Iterable[str | int], file: type = ScenarioFile) -> str:
+    """Return in words what stands at a place of a file, with examples of lists."""
+    forms = (_words(each) for each in _places(path, file) if each.get("type", "null") != "null")
     return ", or ".join(dict.fromkeys(forms))
 
 
@@ -179,10 +179,10 @@ def _example(form: dict[str, Any], number: int = 1) -> str:
     return told
 
 
-def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:
-    """Return the schema's definitions for a place of a scenario file, one for each form."""
-    definitions = _form()["$defs"]
-    found = [definitions["ScenarioFile"]]
+def _places(path: Iterable[str | int], file: type = ScenarioFile) -> list[dict[str, Any]]:
+    """Return the schema's definitions for a place of a file, one for each form."""
+    definitions = (_form() if file is ScenarioFile else msgspec.json.schema(file))["$defs"]
+    found = [definitions[file.__name__]]
     for key in path:
         inner = [_inside(definition, key) for definition in found]
         found = [leaf for choice in inner for leaf in _choices(choice, definitions)]
@@ -192,6 +192,9 @@ def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:
 def _inside(definition: dict[str, Any], key: str | int) -> dict[str, Any]:
     if isinstance(key, str) and key in definition.get("properties", {}):
         return dict(definition["properties"][key])
+    parts = definition.get("prefixItems", [])
+    if isinstance(key, int) and key < len(parts):
+        return dict(parts[key])
     inner = definition.get("additionalProperties" if isinstance(key, str) else "items")
     return inner if isinstance(inner, dict) else {}
 

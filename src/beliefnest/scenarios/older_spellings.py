@@ -30,7 +30,7 @@ _Change = Callable[[YamlNode, YamlNode | None], YamlNode]
 def respelled(document: Document) -> Document:
     """Return a document with its facts as they are written today.
 
-    If there were older spellings, `Document.older` is a line that says what to write.
+    If there were older spellings, one of `Document.notes` says what to write.
     """
     spelling = _Spelling()
     root = spelling.scene(document.root, None)
@@ -39,7 +39,7 @@ def respelled(document: Document) -> Document:
     line = min(spelling.advice.values())
     place = f"{document.source}:{line}" if line else document.source
     told = f"{place}: has facts in an older spelling; write {', '.join(spelling.advice)}"
-    return replace(document, root=root, older=told)
+    return replace(document, root=root, notes=(*document.notes, told))
 
 
 @dataclass(slots=True)

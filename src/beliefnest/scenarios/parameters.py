@@ -27,14 +27,16 @@ from beliefnest.scenarios.document import (
     under,
     wrapped,
 )
+from beliefnest.scenarios.document_form import entry_fault
 from beliefnest.scenarios.expressions import evaluate, names_in
 from beliefnest.scenarios.format import ParameterEntry
-from beliefnest.world.texts import quoted, shortened
+from beliefnest.world.texts import quoted
+from beliefnest.world.words import nearest_or_all
 
 _HOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}", re.ASCII)
 _PROGRAMS = ("program", "programs")
-"""Keys of programs, in which `${...}` may belong to JavaScript."""
+"""Keys of programs, in which a `${...}` between backticks may belong to JavaScript."""
 _MOST_VALUES = 1_000_000
 _KEYS = ("parameters", "constraints")
 """Keys of the declarations, which a condition may override."""
@@ -64,12 +66,13 @@ def declared_in(document: Document, condition: int | None = None) -> dict[str, P
     Raises:
         ScenarioError: A declaration has a wrong form, or a condition declares a new parameter.
     """
-    node = under(document, condition, _KEYS).root.value.get("parameters")
+    written = document.root.value.get("parameters")
+    document = under(document, condition, _KEYS)
+    node = document.root.value.get("parameters")
     if node is None:
         return {}
     if not isinstance(node.value, dict):
         raise document.fault(("parameters",), "must be a mapping from name to declaration")
-    written = document.root.value.get("parameters")
     for name in node.value:
         if condition is not None and (written is None or name not in written.value):
             path = ("conditions", condition, "parameters", str(name))
@@ -84,11 +87,7 @@ def _declared(document: Document, name: object, entry: YamlNode) -> ParameterEnt
     try:
         found = msgspec.convert(plain(entry), ParameterEntry)
     except msgspec.ValidationError as error:
-        raise document.fault(
-            path,
-            f"{shortened(str(error), 200)}; write {{default: ..., values: [...]}} or "
-            "{default: ..., range: [...]}",
-        ) from None
+        raise entry_fault(document, path, str(error)) from None
     if found.values and found.range is not None:
         raise document.fault(path, "give 'values' or 'range', not both")
     if found.range is not None and found.range[0] > found.range[1]:
@@ -133,17 +132,34 @@ def broken_constraint(
 def check_declared(
     document: Document, declared: Mapping[str, ParameterEntry], given: Mapping[str, object]
 ) -> None:
-    """Check that all given parameters are declared.
+    """Check that all given parameters are declared, and have values that they may have.
 
     Raises:
-        ScenarioError: One is not.
+        ScenarioError: One does not.
     """
-    unknown = [name for name in given if name not in declared]
-    if unknown:
-        known = ", ".join(declared) or "none"
-        raise document.fault(
-            (), f"there is no parameter {quoted(unknown[0])}; declared are {known}"
-        )
+    if not isinstance(given, Mapping):
+        raise document.fault((), f"parameters is {quoted(given)}; give values by name")
+    for name, value in given.items():
+        if name not in declared:
+            hint = nearest_or_all(str(name), [*declared] or ["none"], "declared are")
+            raise document.fault((), f"there is no parameter {quoted(name)}{hint}")
+        if fault := _value_fault(declared[name], plain(wrapped(value))):
+            raise document.fault(("parameters", name), f"{quoted(value)} is not allowed; {fault}")
+
+
+def _value_fault(declared: ParameterEntry, value: object) -> str:
+    """Return what a parameter allows instead of a value; empty: it allows the value."""
+    if value == declared.default or (isinstance(value, str) and "${" in value):
+        return ""
+    if value is None and not declared.values:
+        return "give a value"
+    if declared.values and value not in declared.values:
+        return f"allowed are {', '.join(map(json.dumps, declared.values))}"
+    if declared.range is not None:
+        low, high = declared.range
+        if not isinstance(value, int | float) or not low <= value <= high:
+            return f"give a number from {low} to {high}"
+    return ""
 
 
 def with_parameters(
@@ -167,6 +183,7 @@ def with_parameters(
         # A `${...}` that names nothing is refused here too; it would be shown to people.
         _Filling(document, {}).node(document.root, ())
         return document
+    document = replace(document, notes=(*document.notes, *_unused(document, declared)))
     values = _resolved(
         document, {name: given.get(name, entry.default) for name, entry in declared.items()}
     )
@@ -176,6 +193,16 @@ def with_parameters(
         raise document.fault(("constraints",), f"{quoted(broken)} does not hold for {chosen}")
     root = _Filling(document, values).node(_without_declarations(document.root), ())
     return replace(document, root=root)
+
+
+def _unused(document: Document, declared: Mapping[str, ParameterEntry]) -> Iterator[str]:
+    """Yield a line about each parameter that no value, key or constraint names."""
+    used = _names_within(document.root)
+    for name in (each for each in declared if each not in used):
+        yield (
+            f"{document.key_at(('parameters', name))}is used nowhere, so that its value changes "
+            f"nothing; write ${{{name}}} where it belongs, or remove it"
+        )
 
 
 def _resolved(document: Document, values: Mapping[str, object]) -> dict[str, object]:
@@ -204,13 +231,17 @@ def _resolved(document: Document, values: Mapping[str, object]) -> dict[str, obj
 
 
 def _names_within(node: YamlNode) -> frozenset[str]:
-    """Return the names in all `${...}` of a value."""
+    """Return the names in all `${...}` of a value and its keys, and in constraints."""
     found: set[str] = set()
-    texts = [part.value for part in (node, *_parts(node)) if isinstance(part.value, str)]
-    for text in texts:
-        for hole in _HOLE.finditer(text):
+    for part in (node, *_parts(node)):
+        keys = part.value if isinstance(part.value, dict) else {}
+        inner = keys.get("constraints")
+        expressions = [] if inner is None else [each.value for each in _parts(inner)]
+        for text in (part.value, *keys):
+            expressions += _HOLE.findall(text) if isinstance(text, str) else []
+        for expression in expressions:
             with suppress(InputError):
-                found |= names_in(hole[1])
+                found |= names_in(expression)
     return frozenset(found)
 
 
@@ -313,34 +344,37 @@ class _Filling:
         return filled
 
     def _check_whole(self, text: str, path: KeyPath) -> None:
-        """Refuse a text that would be shown with a `${` in it."""
-        if "${" not in text or self._is_program(path):
+        """Refuse a text that would be shown, or spoken, with a `${` in it."""
+        if "${" not in text:
             return
-        left = _HOLE.search(text)
-        if left is None:
+        for left in _HOLE.finditer(text):
+            if not self._is_javascript(left, path):
+                told = "would hold {} from a parameter's value; name a declared parameter"
+                raise self._document.fault(path, told.format(quoted(left[0])))
+        if _HOLE.search(text) is None and not self._in_value and not _is_program(path):
             told = "has a '${' without an expression; write ${NAME}, with no braces inside"
             raise self._document.fault(path, told)
-        raise self._document.fault(
-            path,
-            f"would hold {quoted(left[0])} from a parameter's value; name a declared parameter",
-        )
 
-    def _is_program(self, path: KeyPath) -> bool:
-        """Return True if a `${...}` there may belong to JavaScript."""
-        return self._in_value or any(key in _PROGRAMS for key in path)
+    def _is_javascript(self, hole: re.Match[str], path: KeyPath) -> bool:
+        """Return True if a `${...}` may belong to a template literal of JavaScript."""
+        before, after = hole.string[: hole.start()], hole.string[hole.end() :]
+        return self._in_value or (_is_program(path) and "`" in before and "`" in after)
 
     def _found(self, hole: re.Match[str], path: KeyPath) -> tuple[object] | None:
         """Return the value of a hole in a tuple; None: it belongs to JavaScript."""
-        own = self._is_program(path)
         try:
             names = names_in(hole[1])
         except InputError:
             names = frozenset()
-        if own and not names & self._values.keys():
+        if self._is_javascript(hole, path) and not names & self._values.keys():
             return None
         with self._document.naming(path):
             return (evaluate(hole[1], self._values),)
         raise AssertionError("unreachable")
+
+
+def _is_program(path: KeyPath) -> bool:
+    return any(key in _PROGRAMS for key in path)
 
 
 def _parts(node: YamlNode) -> Iterator[YamlNode]:

@@ -400,6 +400,8 @@ def _with_template(
     probes = tuple(
         replace(probe, template=text, template_name=template.name) for probe in scenario.probes
     )
+    for probe in probes:
+        probe.check_template()
     return replace(scenario, probes=probes)
 
 

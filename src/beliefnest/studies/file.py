@@ -12,11 +12,13 @@ from beliefnest.episodes.task import Task
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, plain
 from beliefnest.scenarios.document_form import FAULT_STEP
+from beliefnest.scenarios.json_schema import wanted_form
 from beliefnest.scenarios.sources import builtin_names
 from beliefnest.studies.checking import StudyKeyError, several
 from beliefnest.studies.design import Design, template_named
 from beliefnest.studies.episode_design import EpisodeDesign, Policies, listed
 from beliefnest.studies.study_keys import StudyKeys, design_of, labelled_scenarios
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import nearest_or_all
 from beliefnest.worlds.names import check_world
 
@@ -112,5 +114,10 @@ def _fault(document: Document, error: str) -> ScenarioError:
     if what.startswith("Object contains unknown field"):
         path = [what.split("`")[1]]
         what = f"unknown key{nearest_or_all(str(path[0]), StudyKeys.__struct_fields__)}"
+    elif " got " in what and path:
+        value = document.root
+        for key in path:
+            value = value.value[key]
+        what = f"expected {wanted_form(path, StudyKeys)}, got {quoted(plain(value))}"
     what = what[:1].lower() + what[1:].replace("`", "'")
     return document.fault(tuple(path), what)

@@ -98,11 +98,9 @@ def resolve_policy(
         return _WITHOUT_OPTIONS[name]()
     if is_own_policy(name):
         return _of_user(name)
-    if forms := [form for form in POLICIES if form.partition(":")[0] == kind]:
-        raise UnknownNameError(f"there is no policy {quoted(name)}; write {listed(forms, 'or')}")
-    close = difflib.get_close_matches(kind, sorted(_KINDS), n=1)
-    hint = f"did you mean {quoted(close[0])}? Policies are" if close else "give one of"
-    raise UnknownNameError(f"there is no policy {quoted(name)}; {hint} {', '.join(POLICIES)}")
+    near = difflib.get_close_matches(kind, sorted(_KINDS), n=1)  # A kind is nearest to itself.
+    forms = [form for form in POLICIES if form.partition(":")[0] in near] or POLICIES
+    raise UnknownNameError(f"there is no policy {quoted(name)}; write {listed(forms, 'or')}")
 
 
 def _omniscient() -> Policy:
