@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from beliefnest.errors import BodyError
-from beliefnest.studies.jobs import StudyProgress
+from beliefnest.plan.jobs import StudyProgress
 from beliefnest.studies.study import Study
 from beliefnest_benchmarks.figures import Metric
 

@@ -7,10 +7,10 @@ state, which has a door of its own.
 from tests.noninterference.doors import door
 from tests.noninterference.pairs import AGENTS, Played
 
+from beliefnest.plan.scenario_cells import Cell, CellKey
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.cells import Cell, CellKey
 from beliefnest.studies.participants.folder import experiment
 from beliefnest.studies.participants.items import Item, ItemQuestion
 from beliefnest.studies.participants.playing import view_of

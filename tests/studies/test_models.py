@@ -11,7 +11,7 @@ from tests.processes import started
 from tests.studies.small import small_in, study_in
 
 import beliefnest as bn
-from beliefnest.studies.spending import spent_in
+from beliefnest.plan.spending import spent_in
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 

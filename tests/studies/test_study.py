@@ -19,8 +19,8 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.messages import Usage
-from beliefnest.studies.jobs import _engine
-from beliefnest.studies.spending import SharedBudget, spent_in
+from beliefnest.plan.jobs import _engine
+from beliefnest.plan.spending import SharedBudget, spent_in
 from beliefnest.studies.study_folder import StudyFolder
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
@@ -91,7 +91,7 @@ if importlib.util.find_spec("ray") is not None:  # at night only
 IN_PROCESSES = """
 import sys
 from beliefnest.cli import main
-from beliefnest.studies import jobs
+from beliefnest.plan import jobs
 jobs._FEW = {}
 sys.argv[0] = "beliefnest"
 main()
@@ -162,22 +162,6 @@ def test_a_folder_of_another_study_is_neither_gone_on_in_nor_merged(whole, tmp_p
     assert "study: checking all variations\n" in shown
     assert "holds no cell of this study" in shown
     assert not cells_of(tmp_path / "out")
-
-
-OWNER = """
-import subprocess, sys, time
-worker = "import os, time; from beliefnest.studies.ending import end_with; "
-worker += "end_with(os.getppid()); print('begun', flush=True); time.sleep(3600)"
-subprocess.run([sys.executable, "-c", worker])
-"""
-
-
-def test_a_worker_ends_with_a_study_that_is_killed():
-    with subprocess.Popen([sys.executable, "-c", OWNER], stdout=subprocess.PIPE) as owner:
-        assert owner.stdout.readline() == b"begun\n"
-        owner.kill()
-        # The end of what the worker may write is its own end.
-        assert owner.stdout.read() == b""
 
 
 def test_a_study_that_has_ended_can_become_larger(tmp_path):
@@ -417,17 +401,17 @@ def test_a_few_quick_cells_are_played_by_one_process(whole, tmp_path, monkeypatc
     def no_processes(*arguments):
         raise AssertionError("a process was started")
 
-    monkeypatch.setattr("beliefnest.studies.jobs.processes", no_processes)
+    monkeypatch.setattr("beliefnest.plan.jobs.processes", no_processes)
     bn.Study.load(whole[1]).run(tmp_path / "one", jobs=2)
     assert cells_of(tmp_path / "one") == cells_of(whole[0])
-    monkeypatch.setattr("beliefnest.studies.jobs._FEW", {"embedded": CELLS - 1})
+    monkeypatch.setattr("beliefnest.plan.jobs._FEW", {"embedded": CELLS - 1})
     with pytest.raises(AssertionError, match="a process was started"):
         bn.Study.load(whole[1]).run(tmp_path / "two", jobs=2)
 
 
 @pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="needs /proc")
 def test_cells_of_a_process_that_is_killed_are_played_later(whole, tmp_path, monkeypatch):
-    monkeypatch.setattr("beliefnest.studies.jobs._FEW", {})
+    monkeypatch.setattr("beliefnest.plan.jobs._FEW", {})
     before = children()
 
     def kill(progress):

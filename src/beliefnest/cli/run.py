@@ -45,7 +45,6 @@ from beliefnest.timeline.store import Journal
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
-from beliefnest.worlds.minecraft.embedded import launched
 from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.names import check_world
 
@@ -98,7 +97,7 @@ def _run_in(
     try:
         with (
             noted_warnings() as warned,
-            Worlds(options.seed, begun=launched(options.seed, launch)) as worlds,
+            Worlds(options.seed, begun=launch.worlds(options.seed) if launch else None) as worlds,
             kernels_ahead(),
         ):
             for cell in cells:

@@ -19,11 +19,11 @@ from beliefnest.cli.report import cost_text
 from beliefnest.cli.streams import noted_warnings
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
+from beliefnest.plan.jobs import StudyProgress
 from beliefnest.scenarios.judging import OUTCOMES, unanswered_words, without_result_words
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.copies import text_of_copies
-from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study import Study, checked_shard
 from beliefnest.world.words import counted

@@ -16,12 +16,12 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.files import replace_file
 from beliefnest.llm.stored_exchange import encode_exchange
 from beliefnest.nest.past.versions import own_versions
+from beliefnest.plan.jobs import StudyProgress
 from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.archive import damaged_files, unpack
 from beliefnest.studies.bundling import opened
 from beliefnest.studies.comparing import ERROR, PairedDifference, differing_contents
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
-from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.methods import facts_of
 from beliefnest.studies.reproducing import (
     Reproduction,

@@ -27,7 +27,7 @@ from beliefnest.inspect.task_parts import (
     several_files,
 )
 from beliefnest.llm.messages import Answer, Message, Sampling, Usage
-from beliefnest.studies.cells import variation_id
+from beliefnest.plan.cells import variation_id
 
 _OMNISCIENT = "omniscient"
 

@@ -32,9 +32,9 @@ from beliefnest.inspect.task_parts import (
 from beliefnest.llm.messages import Finish
 from beliefnest.llm.reading_numbers import NumbersReading
 from beliefnest.nest.face.nest import Nest
+from beliefnest.plan.cells import variation_id
 from beliefnest.scenarios.inferring import Inferred, Inferring
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.cells import variation_id
 from beliefnest.studies.probe_orders import order_of
 from beliefnest.suites.films.film import Film, FilmParameters
 from beliefnest.suites.films.film_files import read_films

@@ -18,7 +18,7 @@ from beliefnest.inspect.task_parts import (
     without_answer,
 )
 from beliefnest.llm.reading_answers import read_answer
-from beliefnest.studies.cells import variation_id
+from beliefnest.plan.cells import variation_id
 from beliefnest.suites.stories.data import BatteryItem, StoryItems
 from beliefnest.suites.stories.explaining import explain_answer
 from beliefnest.suites.stories.played_story import PlayedStory

@@ -20,10 +20,12 @@ from beliefnest.inspect.task_parts import (
     task_of,
     without_answer,
 )
+from beliefnest.plan.cells import variation_id
+from beliefnest.plan.scenario_cells import Cell
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.records import probe_json
 from beliefnest.scenarios.sources import read_document
-from beliefnest.studies.cells import Cell, plan_cells, variation_id
+from beliefnest.studies.cells import plan_cells
 from beliefnest.studies.design import Design
 from beliefnest.studies.guessing import chance_of
 from beliefnest.studies.probe_orders import order_of

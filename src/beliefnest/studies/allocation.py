@@ -12,12 +12,6 @@ under one condition. `latin-square`: crossed, and divided into lists."""
 
 DESIGNS: tuple[Allocation, ...] = get_args(Allocation)
 
-LIST = "list"
-"""Column of the lists of a Latin square, and its key in the plan."""
-
-LABEL = "label"
-"""Column of the labels of groups of scenarios, and its key in the plan."""
-
 PARTICIPANT = "participant"
 """Column of the people who answered, and its key in the identity of their cells."""
 

@@ -1,214 +1,24 @@
-"""Plan of a study: one cell for each combination, with a unique name and a seed."""
+"""Plan of a study of scenarios: one cell for each combination."""
 
-import hashlib
 import json
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any, Generic, Protocol, TypeVar
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.plan.cells import Invalid, Plan
+from beliefnest.plan.scenario_cells import Cell, CellKey, content_of
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template
 from beliefnest.scenarios.document import Document
-from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.parameters import declared_in
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.allocation import LABEL, LIST, balanced, latin_lists
-from beliefnest.studies.chance import scenario_draws
+from beliefnest.studies.allocation import balanced, latin_lists
 from beliefnest.studies.checking import StudyKeyError
 from beliefnest.studies.design import Design
 from beliefnest.studies.random_variations import drawn_variations
 from beliefnest.studies.variation import CHANGES, Variation, listed_variations
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import nearest_or_all
-
-SEEDS = 2**32
-"""Number of possible seeds of cells."""
-
-
-@dataclass(frozen=True, slots=True)
-class Key(ABC):
-    """Identity of a cell; subclasses add its parts as fields."""
-
-    @property
-    def name(self) -> str:
-        """Sixteen letters and digits, the same for the same cell on every machine."""
-        return digest(self.content_json())[:16]
-
-    @property
-    @abstractmethod
-    def seed(self) -> int:
-        """Return the seed of all random numbers of the cell."""
-
-    def content_json(self) -> dict[str, Any]:
-        """Return all of it as plain values."""
-        values = {each.name: getattr(self, each.name) for each in fields(self)}
-        return {n: dict(v) if isinstance(v, Mapping) else v for n, v in values.items()}
-
-
-class Keyed(Protocol):
-    """Cell of any kind of study."""
-
-    @property
-    def key(self) -> Key:
-        """Return the identity of the cell."""
-
-    def plain(self) -> dict[str, Any]:
-        """Return the cell as plain values for the study's plan."""
-
-
-C = TypeVar("C", bound=Keyed)
-
-
-@dataclass(frozen=True, slots=True)
-class CellKey(Key):
-    """Identity of a cell in a study of scenarios.
-
-    Attributes:
-        scenario: Name of the scenario.
-        content: Hash of the scenario's file and of the template.
-        condition: Number of the condition; None: the scenario has no conditions.
-        variation: Values of parameters and of further changes.
-        model: Name of the model.
-        template: Name of the prompt template; empty: that of the scenario.
-        repeat: Number of the repeat, from 1.
-        setting: Further settings that affect results: seed, world, attempts, temperature, and so
-            on.
-    """
-
-    scenario: str
-    content: str
-    condition: int | None
-    variation: Mapping[str, Any]
-    model: str
-    template: str
-    repeat: int
-    setting: Mapping[str, Any]
-
-    @property
-    def seed(self) -> int:
-        """Return the seed of all random numbers of the cell.
-
-        The seed depends on variation and repeat, but not on condition, model and template, so that
-        comparisons between these have the same random numbers.
-        """
-        return cell_seed(self.scenario, dict(self.variation), self.repeat, self.setting["seed"])
-
-    @property
-    def title(self) -> str:
-        """Return a title of the cell for progress lines and messages."""
-        parts = [self.scenario]
-        if self.condition is not None:
-            parts.append(f"condition {self.condition}")
-        return ", ".join([*parts, Variation(self.variation).text, self.model])
-
-
-def digest(value: object) -> str:
-    """Return a hash of plain values, the same on every machine."""
-    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
-
-
-def cell_seed(*parts: object) -> int:
-    """Derive the seed of a cell from plain values, the same on every machine."""
-    return int(digest(list(parts)), 16) % SEEDS
-
-
-def variation_id(*parts: object) -> str:
-    """Return a name for an independent variation, from the plain values that identify it.
-
-    The name is the same on every machine and in every shard. It begins with a letter, so that no
-    reader of tables parses it as a number.
-    """
-    return f"v{digest(list(parts))[:10]}"
-
-
-def alike(key: Key, seeds: Collection[str]) -> str:
-    """Return a hash that is the same for cells that differ only by their seed.
-
-    Args:
-        key: Identity of a cell.
-        seeds: Keys of `content_json` that affect nothing but the seed.
-    """
-    return digest({k: v for k, v in key.content_json().items() if k not in seeds})[:16]
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """Variation of a scenario under one condition, to be played once with one model.
-
-    Attributes:
-        key: Identity of the cell.
-        scenario: The scenario.
-        list_number: Number of the cell's list, from 1; None: the design has no lists.
-        label: Label of the scenario's group; empty: it has none.
-    """
-
-    key: CellKey
-    scenario: Scenario
-    list_number: int | None = None
-    label: str = ""
-
-    def plain(self) -> dict[str, Any]:
-        """Return the cell as plain values for the study's plan."""
-        key = self.key
-        models = [key.model, *filter(None, [key.setting.get("claims_from")])]
-        draws = scenario_draws(self.scenario, models)
-        return {
-            "name": key.name,
-            "key": key.content_json(),
-            "seed": key.seed,
-            "variation": variation_id(key.scenario, dict(key.variation)),
-            "alike": None if draws else alike(key, ("repeat",)),
-            **({} if self.list_number is None else {LIST: self.list_number}),
-            **({LABEL: self.label} if self.label else {}),
-            "probes": [
-                {
-                    "label": probe.label,
-                    "path": probe.path,
-                    "acts_in": probe.acts_in,
-                    "agent": probe.agent,
-                    "task": probe.task,
-                    "expected": expected_json(probe.expect),
-                }
-                for probe in self.scenario.probes
-            ],
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class Invalid:
-    """Combination that makes no valid scenario or episode.
-
-    Attributes:
-        scenario: Name, or path, of the scenario.
-        condition: Number of the condition; None: the scenario has no conditions.
-        variation: Values of parameters and of further changes.
-        why: Reason.
-    """
-
-    scenario: str
-    condition: int | None
-    variation: Mapping[str, Any]
-    why: str
-
-
-@dataclass(frozen=True, slots=True)
-class Plan(Generic[C]):
-    """Cells of a study in the order of its table, and its invalid combinations."""
-
-    cells: tuple[C, ...]
-    invalid: tuple[Invalid, ...]
-
-    def shard(self, number: int, count: int) -> "Plan[C]":
-        """Return one of several disjoint parts of the plan; each cell is always in the same part.
-
-        Args:
-            number: Number of the part, from 1.
-            count: Number of parts.
-        """
-        own = [cell for cell in self.cells if int(cell.key.name, 16) % count == number - 1]
-        return replace(self, cells=tuple(own))
 
 
 def plan_cells(
@@ -418,14 +228,9 @@ def planned_cell(key: CellKey, document: Document, template: Template | None) ->
     scene = variation.scene if variation.changes_scene else None
     scenario = Scenario.varied(document, key.condition, variation.parameters, scene)
     if template is None:
-        return Cell(replace(key, content=_content(document, scenario, None)), scenario)
+        return Cell(replace(key, content=content_of(document.text, scenario, None)), scenario)
     asked = _with_template(scenario, template, variation, document)
-    return Cell(replace(key, content=_content(document, asked, template)), asked)
-
-
-def _content(document: Document, scenario: Scenario, template: Template | None) -> str:
-    """Return the hash of a scenario's file and of its templates."""
-    return digest([document.text, dict(scenario.templates), template and template.text])[:16]
+    return Cell(replace(key, content=content_of(document.text, asked, template)), asked)
 
 
 def _cells(
@@ -435,7 +240,7 @@ def _cells(
     variation: Variation,
 ) -> Iterator[Cell]:
     for template, scenario in asked:
-        content = _content(document, scenario, template)
+        content = content_of(document.text, scenario, template)
         for model in design.models:
             for repeat in range(1, design.repeats + 1):
                 key = CellKey(

@@ -7,7 +7,7 @@ rows is counted. The column `copy_of` marks the others.
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from beliefnest.studies.cells import digest
+from beliefnest.plan.cells import digest
 from beliefnest.studies.study_folder import ResultFolder
 
 _OWN = ("key", "seed", "run")

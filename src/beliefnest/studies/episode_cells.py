@@ -1,28 +1,36 @@
 """Plan of a study of episodes: its cells."""
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
+from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.choosing import check_played
-from beliefnest.episodes.policies import is_program, resolve_policy, text_of_policy
+from beliefnest.episodes.episode import Episode
+from beliefnest.episodes.policies import (
+    draws_by_seed,
+    is_program,
+    resolve_policy,
+    text_of_policy,
+)
 from beliefnest.episodes.task import Task
 from beliefnest.errors import BeliefNestError, InputError, MissingExtraError, ModelError
-from beliefnest.scenarios.document import Document
-from beliefnest.scenarios.loading import condition_numbers
-from beliefnest.studies.cells import (
+from beliefnest.plan.cells import (
     Invalid,
     Key,
     Plan,
     alike,
     cell_seed,
-    check_called,
     digest,
     variation_id,
 )
-from beliefnest.studies.chance import episode_draws
+from beliefnest.plan.draws import may_draw, script_draws
+from beliefnest.plan.terms import PlayStage
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.loading import condition_numbers
+from beliefnest.studies.cells import check_called
 from beliefnest.studies.episode_design import EpisodeDesign, Player
 from beliefnest.studies.variation import Variation, listed_variations
 from beliefnest.world.texts import quoted
@@ -82,6 +90,8 @@ class EpisodeCell:
     key: EpisodeKey
     task: Task
     draws: bool
+    world: ClassVar[str] = ""
+    is_quick: ClassVar[bool] = False
 
     def plain(self) -> dict[str, Any]:
         """Return the cell as plain values for the study's plan."""
@@ -97,6 +107,59 @@ class EpisodeCell:
             "variation": variation_id(key.task, dict(key.variation), instance),
             "alike": None if self.draws else alike(key, seeds),
         }
+
+    def play(self, stage: PlayStage) -> dict[str, Any]:
+        """Play the episode, and return its result as plain values.
+
+        Raises:
+            ModelError: A model could not be asked, or the limits of the study are reached. An
+                answer without a program is no error: it loses the round.
+        """
+        key, terms = self.key, stage.terms
+        connection = terms.connection()
+        policies: dict[str, Policy] = {}
+        names = {**self.task.form.policies, **key.policies}
+        for agent, name in names.items():
+            policies[agent] = resolve_policy(name, terms.surroundings, connection)
+        store = terms.store(key.name)
+        with Episode(
+            self.task,
+            policies,
+            world=key.setting["world"],
+            store=store,
+            seed=key.seed,
+            worlds=stage.worlds,
+            names=names,
+        ) as episode:
+            while not episode.is_over:
+                episode.play(1)
+                _raise_first(episode)
+            if key.setting.get("help"):
+                episode.help()
+                _raise_first(episode)
+            return {
+                "error": None,
+                "run": "" if store is None else f"runs/{store.name}",
+                "goal": [list(each) for each in episode.conditions],
+                "why_not": "" if episode.success else _why_not(episode),
+                "measures": episode.measures.row(),
+            }
+
+
+def _raise_first(episode: Episode) -> None:
+    for error in episode.model_errors:
+        raise error
+
+
+def _why_not(episode: Episode) -> str:
+    """Return the unmet conditions of the goal, in words."""
+    goal, conditions = episode.task.goal, episode.conditions
+    count = len(goal.reach)
+    broken = [f"not to be: {text}" for text, tick in conditions[count:] if tick is not None]
+    if goal.messages is not None and episode.messages > goal.messages:
+        broken.append(f"{episode.messages} messages; at most {goal.messages}")
+    lacking = [f"not reached: {text}" for text, tick in conditions[:count] if tick is None]
+    return "; ".join(broken or lacking) or "never all of it at one and the same tick"
 
 
 def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
@@ -216,7 +279,7 @@ def _cells(
                 repeat=repeat,
                 setting=design.setting,
             )
-            draws = episode_draws(tasks[seed], policies, texts[player.text])
+            draws = _episode_draws(tasks[seed], policies, texts[player.text])
             yield EpisodeCell(key, tasks[seed], draws)
 
 
@@ -237,3 +300,19 @@ def check_player(player: Player) -> None:
 def _names(player: Player) -> Sequence[str]:
     policies = player.policies
     return [policies] if isinstance(policies, str) else list(policies.values())
+
+
+def _episode_draws(task: Task, policies: Mapping[str, str], texts: Iterable[str]) -> bool:
+    """Return True if an episode draws random numbers, apart from its instance and the world.
+
+    Args:
+        task: Instance of the task; its own policies play agents that `policies` does not name.
+        policies: Names of policies by agent.
+        texts: Texts of the files that define these policies.
+    """
+    names = {**task.form.policies, **policies}.values()
+    return (
+        any(draws_by_seed(name) for name in names)
+        or any(may_draw(text) for text in texts)
+        or script_draws(task.scenario)
+    )

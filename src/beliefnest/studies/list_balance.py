@@ -14,10 +14,11 @@ from itertools import combinations
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.nest import Nest
+from beliefnest.plan.cells import Plan
+from beliefnest.plan.scenario_cells import Cell
 from beliefnest.scenarios.probing import resolved
 from beliefnest.scenarios.questioning import shuffled
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.cells import Cell, Plan
 from beliefnest.worlds.by_name import Worlds
 
 _MOST_ROUNDS = 50

@@ -13,22 +13,25 @@ from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import read_regular_text
 from beliefnest.llm.budget import RunLimits
+from beliefnest.plan.cells import Keyed
+from beliefnest.plan.jobs import OnStudyProgress, run_cells
+from beliefnest.plan.scenario_cells import LABEL, Cell, CellKey
+from beliefnest.plan.terms import Terms
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template, built_in_template
 from beliefnest.scenarios.document import Document, YamlNode
 from beliefnest.scenarios.sources import read_document
-from beliefnest.studies.allocation import LABEL, PARTICIPANT
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.archive import inside
-from beliefnest.studies.cells import Cell, CellKey, Keyed, planned_cell
+from beliefnest.studies.cells import planned_cell
 from beliefnest.studies.comparing import ERROR, PairedDifference, differing_contents, differing_rows
 from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
 from beliefnest.studies.inputs import InputIndex
-from beliefnest.studies.jobs import OnStudyProgress, run_cells
 from beliefnest.studies.plainframe import csv_rows, read_csv_rows
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_record import StudyRecord
-from beliefnest.studies.terms import Terms
 from beliefnest.world.texts import quoted
+from beliefnest.worlds.minecraft.launching import ahead
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +98,7 @@ def reproduce_study(
         environment={},
         cache_mode="only",
     )
-    run_cells(cells, place, terms, jobs, "loky", on_progress)
+    run_cells(cells, place, terms, jobs, "loky", on_progress, ahead)
     for planned, cell in zip(ended, cells, strict=True):
         _restore(place, planned, cell.key.name, inputs.names)
     differences = [

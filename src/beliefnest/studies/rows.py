@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from beliefnest.studies.allocation import LIST
+from beliefnest.plan.scenario_cells import LIST
 from beliefnest.studies.guessing import chance_of
 from beliefnest.studies.probe_orders import order_of
 from beliefnest.studies.table import (

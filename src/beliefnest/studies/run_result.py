@@ -11,8 +11,8 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
+from beliefnest.plan.cells import variation_id
 from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm
-from beliefnest.studies.cells import variation_id
 from beliefnest.studies.forms import read_marked
 
 REPORT = "run.json"

@@ -13,13 +13,17 @@ from beliefnest.llm.model_settings import AskedForm, ModelSettings
 from beliefnest.llm.resolve import check_model, check_structured
 from beliefnest.locking import holding
 from beliefnest.nest.past.versions import own_versions
+from beliefnest.plan.cells import C, Plan
+from beliefnest.plan.jobs import OnStudyProgress, StudyProgress, run_cells
+from beliefnest.plan.scenario_cells import LABEL, Cell
+from beliefnest.plan.terms import Terms
 from beliefnest.prompts.templates import Template
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.sources import read_document
 from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.skills.manifests import SkillDetail
-from beliefnest.studies.allocation import LABEL, PARTICIPANT
-from beliefnest.studies.cells import C, Cell, Plan, plan_cells
+from beliefnest.studies.allocation import PARTICIPANT
+from beliefnest.studies.cells import plan_cells
 from beliefnest.studies.checking import StudyKeyError, is_amount, is_whole, several
 from beliefnest.studies.design import Constraint, Design, template_named
 from beliefnest.studies.episode_cells import EpisodeCell, check_player, plan_episodes
@@ -30,7 +34,6 @@ from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.items.item_set import ItemSet
 from beliefnest.studies.items.making import made_items, with_balanced_items
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
-from beliefnest.studies.jobs import OnStudyProgress, StudyProgress, run_cells
 from beliefnest.studies.list_balance import with_balanced_lists
 from beliefnest.studies.participants.playing import OnItem, refuse_claims
 from beliefnest.studies.participants.running import (
@@ -48,8 +51,8 @@ from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_keys import StudyKeys, design_of
 from beliefnest.studies.table import Table, variation_columns
-from beliefnest.studies.terms import Terms
 from beliefnest.world.texts import quoted
+from beliefnest.worlds.minecraft.launching import ahead
 
 if TYPE_CHECKING:  # pandas is optional, and imported when a table is made.
     import pandas
@@ -312,7 +315,8 @@ class Study:
         self._check_models(terms, backend)
         with holding(place.path):
             self._write_plan(place, self._plan_json(part))
-            run_cells(part.cells, place, terms, jobs, backend, on_progress or _say_nothing)
+            told = on_progress or _say_nothing
+            run_cells(part.cells, place, terms, jobs, backend, told, ahead)
         return StudyResult(place)
 
     def participants(

@@ -1,7 +1,6 @@
 """Folder of a study: one complete file for each finished cell, even if the study is killed."""
 
 import json
-import os
 import shutil
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from beliefnest.errors import InputError
 from beliefnest.files import read_regular, replace_file, replacing
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.locking import is_lock
+from beliefnest.plan.spending import append_line
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
 from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form, read_marked
 
@@ -330,15 +330,6 @@ def _json(content: Mapping[str, Any]) -> str:
     # The encoder of `json` takes five times as long with `indent`; let msgspec add the lines.
     flat = json.dumps(content, sort_keys=True, ensure_ascii=False)
     return msgspec.json.format(flat, indent=1) + "\n"
-
-
-def append_line(file: Path, line: str) -> None:
-    """Append a line to a file; begin a new line if the last one is incomplete."""
-    with file.open("ab+") as opened:
-        size = opened.seek(0, os.SEEK_END)
-        opened.seek(max(0, size - 1))
-        begin = b"\n" if opened.read(1) not in (b"", b"\n") else b""
-        opened.write(begin + line.encode() + b"\n")
 
 
 def _copy(source: Path, target: Path) -> None:

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from beliefnest.llm.failures import NOT_ASKED
+from beliefnest.plan.scenario_cells import LABEL, LIST
 from beliefnest.scenarios.judging import OUTCOMES
-from beliefnest.studies.allocation import LABEL, LIST, PARTICIPANT
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.study_folder import ResultFolder
 

@@ -10,7 +10,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular, replace_file
 from beliefnest.locking import holding
-from beliefnest.studies.cells import digest
+from beliefnest.plan.cells import digest
 from beliefnest.studies.items.exports import card, croissant, tasks
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
 from beliefnest.version import VERSION

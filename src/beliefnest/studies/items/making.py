@@ -8,13 +8,14 @@ from typing import Any
 
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.nest.face.nest import Nest
+from beliefnest.plan.cells import Plan, digest, variation_id
+from beliefnest.plan.scenario_cells import Cell
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.naming import Naming
 from beliefnest.scenarios.probing import naming_for, resolved
 from beliefnest.scenarios.prose_check import check_prose
 from beliefnest.scenarios.questioning import shuffled
-from beliefnest.studies.cells import Cell, Plan, digest, variation_id
 from beliefnest.studies.checking import StudyKeyError
 from beliefnest.studies.items.balance import balanced_names
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord

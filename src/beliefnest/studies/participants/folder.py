@@ -10,7 +10,7 @@ from urllib.parse import urlsplit
 from beliefnest.errors import InputError
 from beliefnest.files import replace_file
 from beliefnest.locking import holding
-from beliefnest.studies.cells import digest, variation_id
+from beliefnest.plan.cells import digest, variation_id
 from beliefnest.studies.participants.film import SceneFilm
 from beliefnest.studies.participants.items import Item
 from beliefnest.studies.participants.playing import ParticipantView

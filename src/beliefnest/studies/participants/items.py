@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from beliefnest.plan.cells import digest
+from beliefnest.plan.scenario_cells import Cell
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected_answers import Answers
-from beliefnest.studies.cells import Cell, digest
 
 
 @dataclass(frozen=True, slots=True)

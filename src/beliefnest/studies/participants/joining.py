@@ -6,13 +6,13 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.llm.messages import Usage
+from beliefnest.plan.scenario_cells import CellKey
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Judgement
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.judging import outcome_of
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply
 from beliefnest.scenarios.records import probe_json
-from beliefnest.studies.cells import CellKey
 from beliefnest.studies.participants.answers import PersonAnswer
 from beliefnest.studies.participants.items import Item, ItemQuestion
 from beliefnest.studies.participants.playing import Judged

@@ -16,6 +16,7 @@ from beliefnest.scenarios.records import expectation_json
 from beliefnest.scenarios.right_answers_check import warn_of_answers, warn_of_scene
 from beliefnest.studies.participants.film import SceneFilm, read_film
 from beliefnest.studies.participants.items import Item
+from beliefnest.studies.variation import Variation
 from beliefnest.worlds.by_name import Worlds
 
 OnItem = Callable[[str, int, int], None]
@@ -106,7 +107,9 @@ def played_items(
 
 def _title(item: Item) -> str:
     """Return scenario, condition and variation of an item."""
-    return item.cell.key.title.removesuffix(f", {item.cell.key.model}")
+    key = item.cell.key
+    condition = [] if key.condition is None else [f"condition {key.condition}"]
+    return ", ".join([key.scenario, *condition, Variation(key.variation).text])
 
 
 @contextmanager

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from beliefnest.errors import InputError
+from beliefnest.plan.scenario_cells import Cell
 from beliefnest.scenarios.document import Document
-from beliefnest.studies.cells import Cell
 from beliefnest.studies.design import Design
 from beliefnest.studies.participants.answers import (
     PersonAnswer,

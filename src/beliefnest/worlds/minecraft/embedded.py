@@ -22,7 +22,6 @@ from beliefnest.worlds.protocol import (
     RunRules,
     SenseSource,
     Sink,
-    World,
 )
 
 
@@ -334,8 +333,3 @@ def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
         "items": node_messages.items_message(after.items),
         "internal_state": after.internal_state,
     }
-
-
-def launched(seed: int, launch: Launch | None) -> Mapping[str, World]:
-    """Return the embedded world of a launch, by its name; empty without a launch."""
-    return {} if launch is None else {"embedded": EmbeddedWorld(seed, launch=launch)}

@@ -7,7 +7,7 @@ everything else while Node loads the world.
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from beliefnest.errors import BodyError, BodyLostError
 from beliefnest.world.seeds import checked_seed
@@ -15,6 +15,9 @@ from beliefnest.world.shell_limits import low_limits
 from beliefnest.worlds.minecraft.channel import PROTOCOL, Channel
 from beliefnest.worlds.minecraft.node_files import EMBEDDED, node_command
 from beliefnest.worlds.process_limits import ProcessLimits
+
+if TYPE_CHECKING:
+    from beliefnest.worlds.protocol import World
 
 MINECRAFT = "1.20.4"
 """Minecraft version of the embedded world."""
@@ -79,6 +82,12 @@ class Launch:
             raise
         self._channel = None
         return channel, {program: str(version) for program, version in told.items()}
+
+    def worlds(self, seed: int) -> "Mapping[str, World]":
+        """Return the embedded world of this launch, by its name; the launch had the same seed."""
+        from beliefnest.worlds.minecraft.embedded import EmbeddedWorld
+
+        return {"embedded": EmbeddedWorld(seed, launch=self)}
 
     def kill(self) -> None:
         """Kill the process, unless a world has taken it."""

@@ -1,4 +1,4 @@
-"""Worker processes of this machine, which take the cells of a study from a common supply.
+"""Worker processes of this machine, which take the cells of a plan from a common supply.
 
 This module imports little, because a worker process imports it first: it launches Node, and then
 imports everything else while Node loads the world.
@@ -13,15 +13,14 @@ from contextlib import ExitStack, contextmanager
 from queue import SimpleQueue
 from typing import TYPE_CHECKING
 
-from beliefnest.studies.ending import end_with
-from beliefnest.worlds.minecraft.launching import ahead
+from beliefnest.plan.ending import end_with
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from beliefnest.studies.cells import Keyed
-    from beliefnest.studies.terms import Terms
-    from beliefnest.studies.worker import CellResult
+    from beliefnest.plan.cells import Keyed
+    from beliefnest.plan.terms import Terms
+    from beliefnest.plan.worker import Ahead, CellResult
 
 _AHEAD = 2
 """Cells that a process has: the one that it plays, and the next one."""
@@ -32,7 +31,7 @@ class Supply:
 
     Args:
         cells: The cells.
-        terms: Terms of the study for the processes.
+        terms: Terms of the plan for the processes.
     """
 
     def __init__(self, cells: "Sequence[Keyed]", terms: "Terms") -> None:
@@ -79,7 +78,7 @@ class Supply:
             return bool(self._left) or self._sent > self._received
 
     def _send(self, pool: "Executor") -> None:
-        from beliefnest.studies.worker import play_in_process
+        from beliefnest.plan.worker import play_in_process
 
         with self._lock:
             if not self._left:
@@ -102,20 +101,21 @@ class Supply:
 
 
 @contextmanager
-def processes(supply: Supply, count: int, world: str) -> Iterator[None]:
+def processes(supply: Supply, count: int, world: str, ahead: "Ahead") -> Iterator[None]:
     """Start worker processes, which play cells of a supply; kill them at the end.
 
     Args:
         supply: The cells.
         count: Number of processes.
         world: Name of the world that each of them needs; empty: it depends on the cell.
+        ahead: Function that launches that world.
     """
     from joblib.externals.loky import ProcessPoolExecutor
 
     pool = ProcessPoolExecutor(max_workers=count)
     try:
         for _ in range(count):
-            ready = pool.submit(_prepare, os.getpid(), world)
+            ready = pool.submit(_prepare, os.getpid(), world, ahead)
             ready.add_done_callback(lambda ended: supply.feed(pool, ended))
         yield
     finally:
@@ -124,13 +124,13 @@ def processes(supply: Supply, count: int, world: str) -> Iterator[None]:
         pool.shutdown(wait=True, kill_workers=True)
 
 
-def _prepare(owner: int, world: str) -> None:
+def _prepare(owner: int, world: str, ahead: "Ahead") -> None:
     """Prepare this worker process: start its world, and import what it needs."""
     end_with(owner)
     # The worker ends with its process, which takes its worlds along.
     stack = ExitStack()
     launch = stack.enter_context(ahead(world, 0))
-    from beliefnest.studies.worker import keep_worker
+    from beliefnest.plan.worker import keep_worker
 
     keep_worker(stack, launch)
 

@@ -1,6 +1,7 @@
-"""Budget of a study, shared by all its workers."""
+"""Ledger of a plan: what its answers cost, shared by all its workers."""
 
 import json
+import os
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -10,14 +11,13 @@ from filelock import FileLock
 from beliefnest.llm.budget import RunLimits, RunSpending, tokens_of_free
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.record_forms import UsageForm, read_lines
-from beliefnest.studies.study_folder import append_line
 
 
 @dataclass
 class SharedBudget(RunSpending):
     """Budget that workers share through a file with a line for each answer.
 
-    Concurrent requests all pass the check, as none of them is counted yet. The study can therefore
+    Concurrent requests all pass the check, as none of them is counted yet. The plan can therefore
     exceed a limit by at most one request of each worker.
 
     Attributes:
@@ -39,7 +39,7 @@ class SharedBudget(RunSpending):
 
     @classmethod
     def of(cls, limits: RunLimits, file: Path) -> "SharedBudget":
-        """Return the budget of a study whose answers are counted in a file."""
+        """Return the budget of a plan whose answers are counted in a file."""
         return cls(limits=limits, file=file)
 
 
@@ -52,3 +52,12 @@ def _answers(file: Path) -> Iterator[Usage]:
     """Yield the usage of each answer in a file."""
     for noted in read_lines(file, UsageForm):
         yield Usage(noted.requests, noted.input_tokens, noted.output_tokens, noted.cost)
+
+
+def append_line(file: Path, line: str) -> None:
+    """Append a line to a file; begin a new line if the last one is incomplete."""
+    with file.open("ab+") as opened:
+        size = opened.seek(0, os.SEEK_END)
+        opened.seek(max(0, size - 1))
+        begin = b"\n" if opened.read(1) not in (b"", b"\n") else b""
+        opened.write(begin + line.encode() + b"\n")

@@ -2,24 +2,23 @@
 
 import contextlib
 import warnings
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
 
-from beliefnest.errors import BodyError, MissingExtraError, UnknownNameError
+from beliefnest.errors import BodyError, InputError, MissingExtraError, UnknownNameError
 from beliefnest.llm.failures import UnavailableModelError
 from beliefnest.llm.messages import Usage
-from beliefnest.llm.resolve import can_vary
-from beliefnest.studies.cells import Cell, Keyed
-from beliefnest.studies.checking import check_count
-from beliefnest.studies.processes import Supply, processes
-from beliefnest.studies.spending import spent_in
-from beliefnest.studies.study_folder import StudyFolder
-from beliefnest.studies.terms import Terms
-from beliefnest.studies.worker import CellResult, Worker, play_in_process
+from beliefnest.plan.cells import Keyed
+from beliefnest.plan.processes import Supply, processes
+from beliefnest.plan.spending import spent_in
+from beliefnest.plan.terms import Terms
+from beliefnest.plan.worker import Ahead, CellResult, Worker, play_in_process
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
-from beliefnest.worlds.minecraft.launching import ahead
 
 BACKENDS = ("loky", "dask", "ray")
 """Joblib backends: processes of this machine, or a Dask or Ray cluster."""
@@ -30,6 +29,23 @@ _ROUND = 8
 """Cells per job in a batch on Ray; results are written after each batch."""
 _FEW = {"embedded": 8, "scripted": 80}
 """Most quick cells, by world, that one process has played before another one has started."""
+
+
+class CellFolder(Protocol):
+    """Folder that keeps the results of cells."""
+
+    @property
+    def ledger(self) -> Path:
+        """File with the usage of each answer, one line each."""
+
+    def cell(self, name: str) -> dict[str, Any] | None:
+        """Return the result of a cell; None: it has none."""
+
+    def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
+        """Write the result of a cell, completely or not at all."""
+
+    def note_seconds(self, name: str, seconds: float) -> None:
+        """Note the wall time of a cell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,15 +75,25 @@ OnStudyProgress = Callable[[StudyProgress], None]
 
 def run_cells(
     cells: Sequence[Keyed],
-    folder: StudyFolder,
+    folder: CellFolder,
     terms: Terms,
     jobs: int,
     backend: str,
     on_progress: OnStudyProgress,
+    ahead: Ahead,
 ) -> None:
     """Play the cells without a result, and write each result as soon as it is known.
 
     Cells that failed before are tried again.
+
+    Args:
+        cells: The cells.
+        folder: Folder of the results.
+        terms: What all cells share.
+        jobs: Number of cells to play in parallel.
+        backend: One of `BACKENDS`.
+        on_progress: Function that receives the progress.
+        ahead: Function that launches the world of a process before the process plays.
 
     Raises:
         InputError: `jobs` is not a whole number, at least 1.
@@ -76,13 +102,14 @@ def run_cells(
         BodyError: A worker process ended unexpectedly.
         UnavailableModelError: A model cannot be asked at all; the other cells are not tried.
     """
-    check_count("jobs", jobs)
+    if not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1:
+        raise InputError(f"jobs is {quoted(jobs)}; it must be a whole number, at least 1")
     if backend not in BACKENDS:
         raise UnknownNameError(f"there is no backend {backend!r}; there are {', '.join(BACKENDS)}")
     left = [cell for cell in cells if _is_open(folder, cell)]
     progress = _Counting(folder, len(cells), len(cells) - len(left), on_progress)
     keys = {cell.key.name: cell.key for cell in left}
-    with contextlib.closing(_results(left, terms, jobs, backend)) as results:
+    with contextlib.closing(_results(left, terms, jobs, backend, ahead)) as results:
         warned: set[str] = set()
         for result in results:
             for each in result.warnings:
@@ -102,7 +129,7 @@ def run_cells(
             progress.count(result)
 
 
-def _is_open(folder: StudyFolder, cell: Keyed) -> bool:
+def _is_open(folder: CellFolder, cell: Keyed) -> bool:
     known = folder.cell(cell.key.name)
     return known is None or known["error"] is not None
 
@@ -111,7 +138,7 @@ class _Counting:
     """Counter of finished cells that reports progress."""
 
     def __init__(
-        self, folder: StudyFolder, total: int, done: int, on_progress: OnStudyProgress
+        self, folder: CellFolder, total: int, done: int, on_progress: OnStudyProgress
     ) -> None:
         self._folder = folder
         self._total = total
@@ -138,7 +165,9 @@ class _Counting:
         self._tell(StudyProgress(self._total, self._done, self._failed, spent))
 
 
-def _results(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _Results:
+def _results(
+    cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str, ahead: Ahead
+) -> _Results:
     if not cells:
         return
     if backend == "loky" and (jobs == 1 or _are_few(cells)):
@@ -149,39 +178,31 @@ def _results(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _
         return
     with _engine(backend, jobs):
         if backend == "loky":
-            yield from _in_processes(cells, terms, jobs)
+            yield from _in_processes(cells, terms, jobs, ahead)
         else:
             yield from _on_cluster(cells, terms, jobs, backend)
 
 
 def _are_few(cells: Sequence[Keyed]) -> bool:
     """Return True if one process plays cells sooner than several, which have to start."""
-    most = _FEW.get(_world_of(cells), 0) if all(map(_is_quick, cells)) else 0
+    most = _FEW.get(_world_of(cells), 0) if all(cell.is_quick for cell in cells) else 0
     return len(cells) <= max(1, most)
 
 
-def _is_quick(cell: Keyed) -> bool:
-    """Return True if a cell is played in a fraction of a second: it asks nobody far away."""
-    if not isinstance(cell, Cell):
-        return False
-    models = (cell.key.model, cell.key.setting.get("claims_from"))
-    return not any(name is not None and can_vary(name) for name in models)
-
-
-def _in_processes(cells: Sequence[Keyed], terms: Terms, jobs: int) -> _Results:
+def _in_processes(cells: Sequence[Keyed], terms: Terms, jobs: int, ahead: Ahead) -> _Results:
     """Play cells in processes of this machine.
 
     This process plays quick cells, too: so cells are played while the others start, and one process
     less has to start. It hands on the results of the others between its own cells. If a cell may
     take long, it plays none, and hands on each result at once.
     """
-    plays = all(map(_is_quick, cells))
+    plays = all(cell.is_quick for cell in cells)
     world = _world_of(cells)
     with ExitStack() as stack:
         # Before the pool, whose library takes a moment to import.
         launch = stack.enter_context(ahead(world, 0)) if plays else None
         supply = Supply(cells, terms)
-        stack.enter_context(processes(supply, min(jobs, len(cells)) - plays, world))
+        stack.enter_context(processes(supply, min(jobs, len(cells)) - plays, world, ahead))
         if plays:
             worker = Worker(stack, launch)
             while (cell := supply.take()) is not None:
@@ -192,7 +213,7 @@ def _in_processes(cells: Sequence[Keyed], terms: Terms, jobs: int) -> _Results:
 
 def _world_of(cells: Sequence[Keyed]) -> str:
     """Return the name of the world in which all cells are played; empty: each has its own."""
-    worlds = {cell.key.setting["world"] if isinstance(cell, Cell) else "" for cell in cells}
+    worlds = {cell.world for cell in cells}
     return worlds.pop() if len(worlds) == 1 else ""
 
 
