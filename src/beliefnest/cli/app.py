@@ -312,6 +312,10 @@ def list_installed(json: Json = False) -> None:
 @with_options(SuiteOptions)
 def suite(options: SuiteOptions) -> int:
     """Answer a file of questions from nests; compare with its answers, or with people."""
+    if options.name == "audit":
+        from beliefnest.cli.audit import run_audit
+
+        return run_audit(options)
     from beliefnest.cli.suite import run_suite
 
     return run_suite(options)

@@ -51,12 +51,12 @@ def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
     Raises:
         BeliefNestError: The input is wrong, or a file cannot be written.
     """
-    films, parameters = read_films(options.data)
+    films, parameters = read_films(options.path)
     if rows is not None:
         films = [film for film in films if film.name in {str(row) for row in rows}]
     films = films[: options.limit]
     if not films:
-        raise InputError(f"{options.data} holds none of the films asked for")
+        raise InputError(f"{options.path} holds none of the films asked for")
     folder = _folder(options.out)
     with holding(folder):
         judged = _judge_all(films, parameters)
@@ -101,7 +101,7 @@ def _report(
     groups = list(dict.fromkeys(film.group for film in films if film.group))
     return {
         "suite": FILMS,
-        "data": str(options.data),
+        "data": str(options.path),
         "seed": options.seed,
         "films": len(films),
         "scored": sum(film.scored for film in films),
@@ -171,7 +171,7 @@ def _write(
     written = []
     rows = _scatter_rows(judged, options.seed)
     if rows:
-        figure = scatter_figure(rows, f"Model and people, {options.data.name}")
+        figure = scatter_figure(rows, f"Model and people, {options.path.name}")
         for ending in ("svg", "pdf", "png"):
             file = folder / f"scatter.{ending}"
             figure.save(file)

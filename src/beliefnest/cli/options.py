@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_type_hin
 
 import typer
 
+from beliefnest.errors import InputError
 from beliefnest.skills.manifests import SkillDetail
 
 if TYPE_CHECKING:  # Models take long to import.
@@ -309,8 +310,15 @@ class ExportOptions:
 class SuiteOptions:
     """Options of `beliefnest suite`."""
 
-    name: Annotated[str, typer.Argument(help="Suite: hi-tom, tomi, stories, food-trucks.")]
-    data: Annotated[Path, typer.Option(help="File of stories and questions, or of films.")]
+    name: Annotated[
+        str, typer.Argument(help="Suite: hi-tom, tomi, stories, food-trucks; or audit.")
+    ]
+    file: Annotated[
+        Path | None, typer.Argument(help="The file, in place of --data.", show_default=False)
+    ] = None
+    data: Annotated[
+        Path | None, typer.Option(help="File of stories and questions, or of films.")
+    ] = None
     world: Annotated[str, typer.Option(help="World in which the stories play.")] = "scripted"
     rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None
     limit: Annotated[int | None, typer.Option(help="Most stories or films to play.")] = None
@@ -325,6 +333,14 @@ class SuiteOptions:
         None
     )
     json: Json = False
+
+    @property
+    def path(self) -> Path:
+        """Return the path of the file; raise InputError if there is none, or are two."""
+        named = [each for each in (self.file, self.data) if each is not None]
+        if len(named) != 1:
+            raise InputError(f"{len(named)} files are given; give one: --data FILE")
+        return named[0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,11 +53,11 @@ def run_suite(options: SuiteOptions) -> int:
         return run_films(options, rows)
     if options.out is not None:
         raise InputError(f"--out is for films; the suite {options.name} writes no files")
-    found = READERS[options.name](options.data, rows)
+    found = READERS[options.name](options.path, rows)
     stories = (found.whole() if options.strict else found.stories)[: options.limit]
     if not stories:
         found.whole()
-        raise InputError(f"{options.data} holds no rows; there is nothing to ask")
+        raise InputError(f"{options.path} holds no rows; there is nothing to ask")
     started = time.perf_counter()
     judged = _answer(stories, options)
     report = _report(options, stories, found.unread, judged, time.perf_counter() - started)
@@ -136,7 +136,7 @@ def _report(
 ) -> dict[str, object]:
     return {
         "suite": options.name,
-        "data": str(options.data),
+        "data": str(options.path),
         "world": options.world,
         "seed": options.seed,
         "stories": len(stories),

@@ -1,0 +1,177 @@
+"""Files of questions in the forms that others publish: rows of story, question and answer.
+
+Read are JSON (a list, or an object with the list), JSON lines and CSV. Names of columns are those
+of Hi-ToM, BigToM, OpenToM and of data sets of Inspect; a file without names has story, question,
+right answer and wrong answers, as BigToM has them.
+"""
+
+import csv
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.files import decode_json, read_regular_text
+from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
+from beliefnest.suites.stories.grammar import Line, parse_line
+from beliefnest.suites.stories.played_story import check_question
+from beliefnest.suites.stories.questions import Question, parse_question
+from beliefnest.suites.stories.story import Story, story_of
+from beliefnest.world.texts import quoted
+
+_STORY = ("story", "narrative", "plot", "context", "input")
+_QUESTION = ("question", "query", "input")
+_ANSWER = ("answer", "target", "label", "gold", "correct", "correct_answer")
+_OPTIONS = ("choices", "options")
+_LISTS = ("data", "rows", "items", "examples")
+_BARE = ("story", "question", "answer")
+_SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z0-9“\"])")
+_LETTER = re.compile(r"\(?([A-Z])[).:]?(?:\s.*)?", re.DOTALL)
+
+_Row = Mapping[str, Any]
+
+
+def read_table(path: Path) -> ReadStories:
+    """Read a file of rows; a row that cannot be read is left out, with the reason.
+
+    Raises:
+        InputError: The file cannot be read, or has no rows.
+    """
+    try:
+        text = read_regular_text(path)
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path} cannot be read: {error}; give a text file") from None
+    stories: dict[str, Story] = {}
+    items: dict[str, list[BatteryItem]] = {}
+    unread: list[Unread] = []
+    for number, row in enumerate(_rows(path, text), 1):
+        where = f"{path}, row {number}"
+        try:
+            told, asked, answer = _parts(row)
+            if told not in stories:
+                lines, faults = _lines(told)
+                if faults:
+                    unread.append(Unread(where, tuple(faults)))
+                    continue
+                stories[told] = story_of(lines)
+            question = parse_question(asked)
+            check_question(stories[told], question)
+        except InputError as error:
+            unread.append(Unread(where, (str(error),)))
+            continue
+        expected = _named(answer, stories[told], question)
+        items.setdefault(told, []).append(BatteryItem(number, question, expected))
+    found = tuple(StoryItems(stories[each], tuple(asked)) for each, asked in items.items())
+    return ReadStories(found, tuple(unread))
+
+
+def _rows(path: Path, text: str) -> Iterator[_Row]:
+    """Yield the rows of a file as mappings."""
+    start = text.lstrip()[:1]
+    if start in "[{":
+        for value in _json_values(path, text):
+            if not isinstance(value, dict):
+                raise InputError(f"{path} has {quoted(value)} in place of a row with names")
+            yield value
+        return
+    first = text.partition("\n")[0]
+    mark = max(",;\t", key=first.count)
+    table = list(csv.reader(StringIO(text), delimiter=mark))
+    names = [each.strip().casefold() for each in table[0]] if table else []
+    headed = any(name in names for name in _STORY) and any(name in names for name in _ANSWER)
+    for cells in table[1:] if headed else table:
+        yield dict(zip(names if headed else _BARE, cells, strict=False))
+
+
+def _json_values(path: Path, text: str) -> Sequence[Any]:
+    try:
+        lines = [line for line in text.splitlines() if line.strip()]
+        if len(lines) > 1 and all(line.lstrip().startswith("{") for line in lines):
+            return [decode_json(line, dict) for line in lines]
+        value = decode_json(text, object)
+    except msgspec.DecodeError as error:
+        raise InputError(
+            f"{path} is no JSON: {error}; give rows as JSON, JSON lines or CSV"
+        ) from None
+    if isinstance(value, dict):
+        lists = [each for name in _LISTS if isinstance(each := value.get(name), list)]
+        return lists[0] if lists else [value]
+    return value if isinstance(value, list) else []
+
+
+def _parts(row: _Row) -> tuple[str, str, str]:
+    """Return story, question and answer of a row."""
+    asked = _first(row, _QUESTION)
+    if isinstance(asked, dict):
+        # OpenToM has the answer beside the question.
+        row = {**row, **asked}
+        asked = _first(asked, _QUESTION)
+    told, answer = _first(row, _STORY), _first(row, _ANSWER)
+    options = _first(row, _OPTIONS)
+    if isinstance(answer, list) and len(answer) == 1:
+        answer = answer[0]
+    for name, value in (("story", told), ("question", asked), ("answer", answer)):
+        if not isinstance(value, str) or not value.strip():
+            raise InputError(
+                f"has no {name}: columns are {', '.join(map(str, row))}; {name}s are read from "
+                f"{', '.join({'story': _STORY, 'question': _QUESTION, 'answer': _ANSWER}[name])}"
+            )
+    if told == asked:
+        # The question is the last sentence of the text.
+        told, _, asked = _last_question(told)
+    if isinstance(options, list) and (letter := _LETTER.fullmatch(answer.strip())):
+        place = ord(letter[1]) - ord("A")
+        answer = str(options[place]) if place < len(options) else answer
+    return told.strip(), asked.strip(), answer.strip()
+
+
+def _first(row: _Row, names: Sequence[str]) -> Any:
+    low = {str(name).casefold(): value for name, value in row.items()}
+    return next((low[name] for name in names if name in low), None)
+
+
+def _last_question(text: str) -> tuple[str, str, str]:
+    """Return a text without its last question, nothing, and the question."""
+    sentences = _sentences(text)
+    asked = [number for number, each in enumerate(sentences) if each.endswith("?")]
+    if not asked:
+        raise InputError(f"{quoted(text)} asks no question; end it with one")
+    return " ".join(sentences[: asked[-1]]), "", sentences[asked[-1]]
+
+
+def _sentences(text: str) -> list[str]:
+    return [each for line in text.splitlines() for each in _SENTENCE.split(line.strip()) if each]
+
+
+def _lines(text: str) -> tuple[list[Line], list[str]]:
+    """Return the sentences of a story, and what cannot be read."""
+    lines: list[Line] = []
+    faults: list[str] = []
+    for number, sentence in enumerate(_sentences(text), 1):
+        # A number stands alone before its sentence if it has a full stop.
+        if re.fullmatch(r"\d+[.:)]?", sentence) or not sentence.strip(" *"):
+            continue
+        try:
+            lines.append(parse_line(number, sentence, "sentence"))
+        except InputError as error:
+            faults.append(str(error))
+    return lines, faults
+
+
+def _named(answer: str, story: Story, question: Question) -> str | None:
+    """Return an answer as the name that the story has for it; the answer itself if it has none."""
+    if question.door is not None or question.sign is not None:
+        return answer.casefold() if question.door is not None else answer
+    wanted = _bare(answer)
+    names = dict.fromkeys(place.container for place in story.places)
+    return next((each for each in names if _bare(each) == wanted), answer)
+
+
+def _bare(name: str) -> str:
+    words = re.findall(r"\w+", name.replace("_", " ").casefold())
+    small = {"the", "a", "an", "in", "is", "it", "s"}
+    return " ".join(each for each in words if each not in small)
