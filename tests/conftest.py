@@ -19,7 +19,7 @@ _SLOW_TO_MAKE = [HealthCheck.too_slow, HealthCheck.data_too_large]
 # The same few examples in every run, so that what fails is what was changed; at night any.
 settings.register_profile(
     "default",
-    max_examples=5,
+    max_examples=3,
     deadline=None,
     derandomize=True,
     suppress_health_check=_SLOW_TO_MAKE,

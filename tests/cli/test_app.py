@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from tests.profiles import few_by_day
 from tests.servers import GameServer
 
 from beliefnest.cli.app import app, run_command_line
@@ -265,7 +266,7 @@ def test_doctor_says_what_to_do_about_a_missing_bundle(
     assert all("pip install" in line for line in failed)
 
 
-@pytest.mark.parametrize("whole_group", [True, False], ids=["from a terminal", "to the command"])
+@pytest.mark.parametrize("whole_group", few_by_day([True, False]))
 def test_an_interrupt_ends_everything_and_leaves_a_readable_folder(whole_group: bool) -> None:
     endless = ROOM.replace(
         "await getItemFromChest(bot, new Vec3(3, 1, 3), {apple: 1});",

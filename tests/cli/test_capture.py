@@ -109,6 +109,7 @@ agents:
 """
 
 
+@pytest.mark.long
 def test_a_box_of_several_cubes_is_captured_from_a_server(tmp_path, monkeypatch):
     file, out = tmp_path / "hall.yaml", tmp_path / "captured.yaml"
     file.write_text(HALL)
@@ -209,6 +210,7 @@ def schematic(states: list[str], numbers: np.ndarray) -> bytes:
     return gzip.compress(_named(10, "Schematic", root), 1)
 
 
+@pytest.mark.long
 def test_a_schematic_of_millions_of_blocks_takes_what_is_in_it(tmp_path):
     file, out = tmp_path / "hills.schem", tmp_path / "hills.yaml"
     states = ["air", "stone", "grass_block", "oak_log[axis=x]"]

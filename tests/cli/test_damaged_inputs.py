@@ -190,7 +190,7 @@ def test_damaged_files_are_refused_in_one_line(
     dice = random.Random(case)
     slow = case in ("place", "replayed study", "replay", "study", "cell", "plan")
     names = sorted(DAMAGES)
-    for name in names if NIGHTLY else dice.sample(names, 3 if slow else 5):
+    for name in names if NIGHTLY else dice.sample(names, 2 if slow else 4):
         folder = tmp_path / name.replace(" ", "-")
         shutil.copytree(made, folder, symlinks=True)
         monkeypatch.chdir(folder)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from tests.pictures.measuring import faults, texts
+from tests.profiles import few_by_day
 from tests.shared_worlds import Lent
 
 from beliefnest.cli.pictures import read_condition
@@ -43,7 +44,7 @@ def drawn(
     yield conditions, scenes
 
 
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("size", few_by_day(SIZES, 2))
 def test_nothing_overlaps_is_cut_off_or_empty(
     drawn: tuple[list[ConditionPicture], list[Scene]], size: object
 ) -> None:

@@ -72,6 +72,7 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     assert f"{tmp_path / 'run.bn'} is not a run file" in complaints
 
 
+@pytest.mark.long
 def test_a_file_of_the_user_hides_no_module_from_the_run_that_is_served(tmp_path: Path) -> None:
     (tmp_path / "random.py").write_text("raise SystemExit('mine')\n", encoding="utf-8")
     beliefnest = Path(sys.executable).with_name("beliefnest")

@@ -36,6 +36,7 @@ def test_from_the_scenario_to_the_figure_and_by_command(
     assert "(4/4)" in capsys.readouterr().err.splitlines()[-1]
 
 
+@pytest.mark.long
 def test_the_study_of_episodes_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     goal = "episode: {goal: {reach: [{agent: ann, items: {diamond: 1}}]}}"

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.profiles import at_night
+from tests.profiles import at_night, few_by_day
 
 import beliefnest as bn
 from beliefnest.episodes.policies.model import ModelPolicy
@@ -197,7 +197,7 @@ AGENTS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "agent"), AGENTS)
+@pytest.mark.parametrize(("name", "agent"), few_by_day(AGENTS, 3))
 def test_what_cannot_be_perceived_changes_nothing_in_any_task(name: str, agent: str) -> None:
     content = bn.Task.load(name, seed=2).plain()
     expected, blocks, used = played_by_reader(content, agent)

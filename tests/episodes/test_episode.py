@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.profiles import few_by_day
 
 import beliefnest as bn
 from beliefnest.episodes.decided import Decision
@@ -115,7 +116,7 @@ def test_what_is_said_of_a_chest_that_its_agent_did_not_see_is_not_told() -> Non
     assert all("diamond" not in str(each) for each in told.told)
 
 
-@pytest.mark.parametrize("rounds", [0, 1, 3])
+@pytest.mark.parametrize("rounds", few_by_day([1, 0, 3]))
 def test_a_stopped_episode_goes_on_as_if_it_had_not_stopped(tmp_path: Path, rounds: int) -> None:
     task = bn.Task.load(TASK, seed=1)
     with bn.Episode(task) as whole:
@@ -234,7 +235,7 @@ bn.Episode(bn.Task.load("help-find", seed=1), store=store).play()
 """
 
 
-@pytest.mark.parametrize("count", [1, 2, 5])
+@pytest.mark.parametrize("count", few_by_day([2, 1, 5]))
 def test_a_killed_episode_goes_on_without_asking_again_what_was_decided(
     tmp_path: Path, count: int
 ) -> None:

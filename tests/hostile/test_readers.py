@@ -17,7 +17,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.hostile.limits import ends_well
-from tests.profiles import at_night
+from tests.profiles import at_night, few_by_day
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.llm.stored_exchange import decode_exchange
@@ -319,15 +319,18 @@ PLACE = (
 
 @pytest.mark.parametrize(
     ("file", "content", "command"),
-    [
-        ("s.yaml", YAML["a text inserted 20,000 times"], ["run", "s.yaml", "--out", "o"]),
-        ("t.jsonl", TRACE.replace(b"3.5", b"1e999"), ["import", "t.jsonl", "--out", "t.bn"]),
-        ("s.zip", ZIPS["a damaged file"], ["reproduce", "s.zip"]),
-        ("r.bn", b"SQLite format 3\0" + bytes(200), ["show", "r.bn"]),
-        ("d.json", b"[" * 100_000, ["suite", "stories", "--data", "d.json"]),
-        ("p.nbt", PLACE, ["capture", "p.nbt", "-o", "p.yaml"]),
-        ("s.yaml", f"scenarios: [{'x' * 3000}]".encode(), ["study", "s.yaml", "--out", "o"]),
-    ],
+    few_by_day(
+        [
+            ("s.yaml", YAML["a text inserted 20,000 times"], ["run", "s.yaml", "--out", "o"]),
+            ("t.jsonl", TRACE.replace(b"3.5", b"1e999"), ["import", "t.jsonl", "--out", "t.bn"]),
+            ("s.zip", ZIPS["a damaged file"], ["reproduce", "s.zip"]),
+            ("r.bn", b"SQLite format 3\0" + bytes(200), ["show", "r.bn"]),
+            ("d.json", b"[" * 100_000, ["suite", "stories", "--data", "d.json"]),
+            ("p.nbt", PLACE, ["capture", "p.nbt", "-o", "p.yaml"]),
+            ("s.yaml", f"scenarios: [{'x' * 3000}]".encode(), ["study", "s.yaml", "--out", "o"]),
+        ],
+        2,
+    ),
     ids=["yaml", "jsonl", "zip", "run", "json", "place", "study"],
 )
 def test_a_command_ends_well(tmp_path, file, content, command):

@@ -286,7 +286,8 @@ LONG = "{% set long = [1] * 900000 %}"
         "{% for i in range(99999) %}{% set told = branch | story %}{% endfor %}",
     ],
 )
-def test_a_template_without_end_is_refused(source):
+def test_a_template_without_end_is_refused(source, monkeypatch):
+    monkeypatch.setattr("beliefnest.prompts.bounds._MOST_STEPS", 1_000_000)
     with pytest.raises(TemplateError, match=r"^mine, line \d+: .*(steps|parts|nested too deeply)"):
         show(Template("mine", source))
 

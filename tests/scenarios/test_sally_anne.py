@@ -131,6 +131,7 @@ def fingerprint(store: Path) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_frames_under_load_as_well(tmp_path: Path) -> None:
     def record(name: str) -> list[str]:
         prints = []

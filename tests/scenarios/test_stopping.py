@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from tests.profiles import at_night
+from tests.profiles import at_night, few_by_day
 
 import beliefnest as bn
 from beliefnest.scenarios.sources import builtin_names
@@ -77,7 +77,7 @@ def worlds():
         yield lent
 
 
-@pytest.mark.parametrize("name", builtin_names())
+@pytest.mark.parametrize("name", few_by_day(builtin_names(), 4))
 def test_a_run_that_was_stopped(name, worlds, tmp_path):
     draw = random.Random(SEED)
     for number, scenario in enumerate(bn.Scenario.load_all(name)[: at_night(99, 1)]):

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import HealthCheck, given, settings
-from tests.profiles import at_night
+from tests.profiles import at_night, few_by_day
 from tests.semantics.stories import NAMES, Stage, Stories, Story
 from tests.semantics.test_against_reference import compare
 
@@ -24,7 +24,7 @@ def chunks(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("chunks")
-@pytest.mark.parametrize("each_tick", [False, True])
+@pytest.mark.parametrize("each_tick", few_by_day([False, True]))
 @few
 @given(story=Stories(forks=True, max_acts=10).story)
 def test_every_node_across_borders_of_chunks(story: Story, each_tick: bool):

@@ -194,6 +194,7 @@ def test_slow_answers_are_awaited_side_by_side(server, tmp_path):
     assert result.frame()["ok"].all()
 
 
+@pytest.mark.long
 def test_what_may_be_spent_holds_over_all_jobs_and_runs(server, tmp_path):
     server.will(FakeOpenAI.says(LEFT))
     out, counts = tmp_path / "out", {"count": [1, 2, 3, 4, 5, 6]}

@@ -130,6 +130,7 @@ def test_different_results_of_one_cell_do_not_merge(whole, tmp_path):
         StudyFolder.existing(whole[0]).take_over([tmp_path / "other"], [name])
 
 
+@pytest.mark.long
 def test_a_killed_study_goes_on_to_the_same_rows(whole, tmp_path):
     chance = random.Random(0)
     out, file = tmp_path / "out", whole[1]

@@ -41,7 +41,7 @@ def acted_until_killed(store, seed, least):
     return len(told)
 
 
-@pytest.mark.parametrize("seed", few_by_day(range(KILLS), 2))
+@pytest.mark.parametrize("seed", few_by_day(range(KILLS)))
 def test_a_killed_nest_is_resumed_where_it_was(tmp_path, seed):
     store = tmp_path / "run.bn"
     returned = acted_until_killed(store, seed, random.Random(seed).randrange(1, LONGEST))

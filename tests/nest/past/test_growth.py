@@ -4,6 +4,7 @@ import gc
 import tracemalloc
 
 import pytest
+from tests.profiles import few_by_day
 
 import beliefnest as bn
 from beliefnest.nest.past import history
@@ -28,7 +29,7 @@ def walk(world: bn.ScriptedWorld, nest: bn.Nest, ticks: int) -> int:
     return tracemalloc.get_traced_memory()[0]
 
 
-@pytest.mark.parametrize("store", [None, "run.bn"], ids=["memory", "file"])
+@pytest.mark.parametrize("store", few_by_day(["run.bn", None]))
 def test_no_pose_of_the_past_stays_in_memory(store, tmp_path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(history, "_STRETCHES", 1)
     agents = {name: (0.5, 1.0, number + 0.5) for number, name in enumerate(AGENTS)}

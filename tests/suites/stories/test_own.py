@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 
 import pytest
+from tests.profiles import few_by_day
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
@@ -141,7 +142,7 @@ SIGNS = {
 LONG = f'Anne wrote "{"x" * 46}" on the sign of the den.'
 
 
-@pytest.mark.parametrize("world", ["scripted", "embedded"])
+@pytest.mark.parametrize("world", few_by_day(["scripted", "embedded"]))
 def test_what_is_written_on_a_sign_is_known_to_who_saw_it(tmp_path, world):
     file = tmp_path / "stories.jsonl"
     file.write_text(json.dumps(SIGNS))
@@ -199,7 +200,7 @@ def test_what_a_sentence_writes_on_a_sign_stays_as_it_is(tmp_path):
     assert all(judged.ok for judged in answer_story(told, "scripted", 0))
 
 
-@pytest.mark.parametrize("world", ["scripted", "embedded"])
+@pytest.mark.parametrize("world", few_by_day(["scripted", "embedded"]))
 def test_a_model_may_read_what_is_told(file, tmp_path, world, capsys):
     story = {
         "events": [

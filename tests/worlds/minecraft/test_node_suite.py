@@ -14,9 +14,12 @@ FILES = sorted(path.relative_to(NODE_ROOM) for path in (NODE_ROOM / "test").rglo
 TOGETHER = () if NIGHTLY else ("places", "plugins", "sandbox", "skills")
 """Folders whose files run in one process by day: most of what a file takes is Node's beginning."""
 
-LONG = ("fuzz", "long", "people", "tcp", "determinism.test.js", "resuming.test.js")
+LONG = (
+    *("fuzz", "long", "people", "tcp", "determinism.test.js", "resuming.test.js"),
+    *("doors.test.js", "process.test.js", "rest.test.js"),
+)
 """Folders and files whose tests wait for real time, vary at random what the others try, or start
-Node often for what Python's tests of seeds and of resumed runs hold as well."""
+Node often for what Python's tests of seeds, resumed runs, doors, channels and rest hold as well."""
 
 
 def runs() -> dict[str, list[Path]]:
