@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from beliefnest.errors import InputError
+from beliefnest.errors import BeliefNestError, InputError
 
 _SUFFIX = ".py"
 _OWN = "beliefnest"
@@ -42,6 +42,42 @@ def imported_object(text: str, what: str) -> object:
         return getattr(module, name)
     except AttributeError:
         raise InputError(f"{place} has no {what} {name!r}{_hint(name, module)}") from None
+
+
+def made_object(name: str, group: str, what: str, method: str, returns: str) -> Any:
+    """Return an object of the user's own, which a class or function without arguments makes.
+
+    Args:
+        name: Name of an entry point of the group, or a name as for `imported_object`.
+        group: Group of entry points.
+        what: Kind of the object for messages, such as "policy".
+        method: Method that the object must have. An object with this method that is no class
+            is returned as it is.
+        returns: What the method takes and returns, for messages.
+
+    Raises:
+        InputError: There is no such object, or it makes none of this kind.
+    """
+    entry = installed(group, name)
+    made = imported_object(name, what) if entry is None else load(entry, what)
+    if isinstance(made, type) or not callable(getattr(made, method, None)):
+        if not callable(made):
+            raise InputError(f"{name!r} is no class and no function; name one that makes a {what}")
+        try:
+            made = made()
+        except TypeError as error:
+            raise InputError(
+                f"{name!r} cannot be called without arguments: {error}; give them defaults"
+            ) from error
+        except BeliefNestError:
+            raise
+        except (Exception, SystemExit) as error:  # Code of users may raise anything.
+            raise InputError(f"{name!r} raised {type(error).__name__}: {error}") from error
+    if not callable(getattr(made, method, None)):
+        raise InputError(
+            f"{name!r} makes no {what}: {type(made).__name__} has no method {method}{returns}"
+        )
+    return made
 
 
 def part(name: str) -> Any:
@@ -82,6 +118,18 @@ def installed_names(group: str) -> tuple[str, ...]:
     return (*sorted(own), *sorted(entry_points(group=group).names - own))
 
 
+def installed_entries(group: str) -> tuple[EntryPoint, ...]:
+    """Return the entry points of a group, as `installed` returns each."""
+    entries = (installed(group, name) for name in installed_names(group))
+    return tuple(entry for entry in entries if entry is not None)
+
+
+def told_entry(entry: EntryPoint, what: str) -> str:
+    """Return an entry point in words; `what` is the kind of its object, such as "world"."""
+    package = entry.dist.name if entry.dist is not None else entry.module
+    return f"the {what} {entry.name!r} of the installed package {package} ({entry.value})"
+
+
 def load(entry: EntryPoint, what: str) -> Any:
     """Return the object of an entry point; `what` is its kind for messages, such as "world".
 
@@ -91,11 +139,8 @@ def load(entry: EntryPoint, what: str) -> Any:
     try:
         return entry.load()
     except Exception as error:  # Code of users may raise anything.
-        package = entry.dist.name if entry.dist is not None else entry.module
-        raise InputError(
-            f"the {what} {entry.name!r} of the installed package {package} ({entry.value}) cannot "
-            f"be imported: {type(error).__name__}: {error}"
-        ) from error
+        told = f"{type(error).__name__}: {error}"
+        raise InputError(f"{told_entry(entry, what)} cannot be imported: {told}") from error
 
 
 def _own_entries(group: str) -> EntryPoints:

@@ -17,7 +17,7 @@ import typer
 import yaml
 
 from beliefnest.cli.app import app
-from beliefnest.episodes.tasks import builtin_tasks
+from beliefnest.episodes.tasks import task_names
 from beliefnest.scenarios.sources import builtin_names
 
 ROOT = Path(__file__).parents[2]
@@ -53,6 +53,7 @@ RUN_BY = {
     ("people.md", "javascript"): "worlds/servers/test_people.py",
     ("people.md", "python"): "worlds/servers/test_people.py",
     ("pettingzoo.md", "python"): "env/test_environment.py",
+    ("plugins.md", "python"): "packaging/test_plugins.py",
     ("programs.md", "python"): "docs/test_nest_pages.py",
     ("psychologist.md", "python"): "docs/test_psychologist_page.py",
     ("python.md", "python"): "docs/test_nest_pages.py",
@@ -123,7 +124,7 @@ def test_commands_and_their_options_are_those_there_are() -> None:
 
 
 def test_tasks_for_inspect_are_those_there_are() -> None:
-    named = {name.replace("-", "_") for name in (*builtin_names(), *builtin_tasks())}
+    named = {name.replace("-", "_") for name in (*builtin_names(), *task_names())}
     asked = [words for _, words in commands("inspect")]
     assert asked
     for verb, task, *_ in asked:

@@ -1,8 +1,7 @@
 """Models of the user's own, by file, module and entry point."""
 
-import importlib.metadata
-
 import pytest
+from tests.installing import install
 
 from beliefnest.errors import InputError, ModelError, UnknownNameError
 from beliefnest.llm import (
@@ -69,13 +68,8 @@ def test_a_model_is_found_by_file_and_by_module(own, made, by):
     assert not is_free(name, {})
 
 
-def test_a_model_is_found_by_the_name_of_an_entry_point(own, monkeypatch):
-    entry = importlib.metadata.EntryPoint("parrot", f"{own.stem}:Mine", "beliefnest.models")
-
-    def entry_points(group, name=None):
-        return [entry] if group == entry.group and name in (None, entry.name) else []
-
-    monkeypatch.setattr("beliefnest.llm.own_models.entry_points", entry_points)
+def test_a_model_is_found_by_the_name_of_an_entry_point(own):
+    install(own.parent, "parrots", "[beliefnest.models]\nparrot = own_models_here:Mine\n")
     assert resolve_model("parrot", {}).answer(ASK, Sampling()).text == "heard Get a diamond."
     assert "parrot" in model_names()
     with pytest.raises(UnknownNameError, match="did you mean parrot"):

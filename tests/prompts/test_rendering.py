@@ -1,9 +1,9 @@
 """Templates: strict, sandboxed, with errors that name the line."""
 
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
+from tests.installing import install
 
 from beliefnest.errors import InputError, TemplateError
 from beliefnest.prompts import (
@@ -156,9 +156,9 @@ def installed_greeting(branch):
     ("value", "message"),
     [("no_such_module:f", "no_such_module"), ("json:dumps", "@filter")],
 )
-def test_an_installed_filter_that_cannot_be_used_is_named(monkeypatch, value, message):
-    entry = EntryPoint("bad", value, filterset.FILTER_GROUP)
-    monkeypatch.setattr(filterset, "entry_points", lambda group: [entry])
+def test_an_installed_filter_that_cannot_be_used_is_named(tmp_path, monkeypatch, value, message):
+    install(tmp_path, "bad-filters", f"[beliefnest.filters]\nbad = {value}\n")
+    monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(InputError, match=rf"'bad'.*{message}"):
         filterset.installed_filters(BUILT_IN)
 
@@ -168,12 +168,7 @@ def test_installed_filters_are_found(tmp_path: Path, monkeypatch):
         "from beliefnest.prompts import filter\n\n"
         "@filter('greeting')\ndef greeting(branch):\n    return 'Hi ' + branch.state.owner\n"
     )
-    info = tmp_path / "bn_greeting-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: bn-greeting\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text(
-        "[beliefnest.filters]\ngreeting = bn_greeting:greeting\n"
-    )
+    install(tmp_path, "bn-greeting", "[beliefnest.filters]\ngreeting = bn_greeting:greeting\n")
     monkeypatch.syspath_prepend(tmp_path)
     assert show("{{ branch | greeting }}", filterset.installed_filters(BUILT_IN)) == "Hi sally"
 

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from tests.installing import install
 
 from beliefnest.studies.filter_packages import filter_packages
 
@@ -20,16 +21,12 @@ def shouting(branch):
 @pytest.fixture
 def installed(tmp_path, monkeypatch):
     package = tmp_path / "site" / "shouting_here"
-    info = tmp_path / "site" / "shouting_here-1.dist-info"
-    for folder in (package, info):
-        folder.mkdir(parents=True)
+    package.mkdir(parents=True)
     (package / "__init__.py").write_text("", encoding="utf-8")
     (package / "words.py").write_text("loud = str.upper\n", encoding="utf-8")
     (package / "filters.py").write_text(SOURCE, encoding="utf-8")
-    (info / "METADATA").write_text("Name: shouting-here\nVersion: 1\n", encoding="utf-8")
-    (info / "entry_points.txt").write_text(
-        "[beliefnest.filters]\nshouting = shouting_here.filters:shouting\n", encoding="utf-8"
-    )
+    declared = "[beliefnest.filters]\nshouting = shouting_here.filters:shouting\n"
+    install(package.parent, "shouting-here", declared)
     monkeypatch.syspath_prepend(str(tmp_path / "site"))
 
 

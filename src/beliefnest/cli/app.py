@@ -28,6 +28,7 @@ from beliefnest.cli.options import (
 )
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.importing import installed, installed_entries, load
 from beliefnest.version import VERSION
 from beliefnest.world.shell_limits import low_limits
 from beliefnest.world.texts import is_well_formed
@@ -51,8 +52,22 @@ _WRITE = "Write files"
 _HERE = "See what is here"
 
 
+_INSTALLED = "beliefnest.commands"
+"""Group of entry points by name of a command: functions with the annotations of Typer."""
+
+
 class _InPanels(TyperGroup):
-    """Commands whose list in the help is grouped, as plain text."""
+    """Commands whose list in the help is grouped, as plain text; also those of other packages."""
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return the command of a name, or else that of an installed package."""
+        own = super().get_command(ctx, cmd_name)
+        entry = None if own is not None else installed(_INSTALLED, cmd_name)
+        if entry is None:
+            return own
+        alone = typer.Typer(rich_markup_mode=None, add_completion=False)
+        alone.command(cmd_name)(load(entry, "command"))
+        return typer.main.get_command(alone)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write a section for each panel, in the order of its first command."""
@@ -67,6 +82,9 @@ class _InPanels(TyperGroup):
                         if command.rich_help_panel == panel
                     ]
                 )
+        if others := installed_entries(_INSTALLED):
+            with formatter.section("Of other packages"):
+                formatter.write_dl([(each.name, each.module) for each in others])
 
 
 app = typer.Typer(

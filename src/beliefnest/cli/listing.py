@@ -4,12 +4,12 @@ from rich.text import Text
 
 from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.terminal_text import say
-from beliefnest.episodes.tasks import builtin_tasks
+from beliefnest.episodes.tasks import task_names
 from beliefnest.llm.resolve import model_names
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.outline import builtin_outline
 from beliefnest.scenarios.sources import builtin_names
-from beliefnest.suites import SUITES
+from beliefnest.suites import suite_names
 from beliefnest.worlds.names import server_forms, world_names
 
 
@@ -25,8 +25,8 @@ def print_installed(*, as_json: bool) -> None:
             }
             for scenario in scenarios
         ],
-        "tasks": list(builtin_tasks()),
-        "suites": list(SUITES),
+        "tasks": list(task_names()),
+        "suites": list(suite_names()),
         "templates": list(BUILT_IN_TEMPLATES),
         "worlds": list(world_names()),
         "models": list(model_names()),
@@ -37,8 +37,8 @@ def print_installed(*, as_json: bool) -> None:
         for number, text in scenario.conditions.items():
             table.add_row("", str(number), text)
     further = {
-        "tasks": builtin_tasks(),
-        "suites": SUITES,
+        "tasks": task_names(),
+        "suites": suite_names(),
         "templates": tuple(BUILT_IN_TEMPLATES),
         "worlds": (*world_names(), *server_forms()),
         "models": model_names(),

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.films import run_films
 from beliefnest.cli.options import SuiteOptions
-from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.suites import FILMS, SUITES
+from beliefnest.errors import InputError
+from beliefnest.suites import FILMS, story_reader
 from beliefnest.suites.stories.data import StoryItems, Unread
 from beliefnest.suites.stories.suite import (
-    READERS,
     JudgedAnswer,
     Score,
     answer_story,
@@ -42,18 +41,17 @@ def run_suite(options: SuiteOptions) -> int:
     Raises:
         BeliefNestError: The input is wrong, or a world failed.
     """
-    if options.name not in SUITES:
-        raise UnknownNameError(f"no suite {options.name!r}; there are {', '.join(SUITES)}")
+    read = None if options.name == FILMS else story_reader(options.name)
     if options.limit is not None and options.limit < 1:
         raise InputError(f"--limit is {options.limit}; give 1 or more stories")
     check_world(options.world, servers=False)
     rows = None if options.rows is None else parse_rows(options.rows)
-    if options.name == FILMS:
+    if read is None:
         _check_films(options)
         return run_films(options, rows)
     if options.out is not None:
         raise InputError(f"--out is for films; the suite {options.name} writes no files")
-    found = READERS[options.name](options.path, rows)
+    found = read(options.path, rows)
     stories = (found.whole() if options.strict else found.stories)[: options.limit]
     if not stories:
         found.whole()

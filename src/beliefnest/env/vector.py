@@ -52,7 +52,7 @@ _Jobs = Mapping[int, int | Mapping[str, Any]]
 """Seed of the episode to begin, or the actions of agents, by copy."""
 
 
-class Share(gymnasium.Env[Any, Any]):
+class CopiesShare(gymnasium.Env[Any, Any]):
     """Copies of an environment that one process steps.
 
     It is an environment of Gymnasium only in that `AsyncVectorEnv` keeps it in a process.
@@ -149,7 +149,7 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         self._batch: Any = create_empty_array(self.single_observation_space, self.num_envs)
         self._latest: dict[_Row, RowStep] = {}
         self._seeds = [first.first_seed + number for number in range(copies)]
-        self._share = Share(make, range(copies))
+        self._share = CopiesShare(make, range(copies))
         self._workers = _workers(make, copies, processes) if processes > 1 else None
 
     @property
@@ -320,7 +320,7 @@ def _workers(make: Callable[[], BeliefEnv], copies: int, processes: int) -> Asyn
     import joblib.externals.loky  # noqa: F401 - gives the context its name
 
     shares = [
-        lambda mine=range(number, copies, processes): Share(make, mine)
+        lambda mine=range(number, copies, processes): CopiesShare(make, mine)
         for number in range(processes)
     ]
     return AsyncVectorEnv(shares, shared_memory=False, context="loky")

@@ -9,7 +9,7 @@ from typing import Any, Self, cast
 import msgspec
 
 from beliefnest.episodes.task_form import TaskForm
-from beliefnest.episodes.tasks import builtin_tasks, generated
+from beliefnest.episodes.tasks import generated, is_task, task_names
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
 from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.document_form import check_rules_form
@@ -42,8 +42,8 @@ class Task:
 
     @staticmethod
     def names() -> tuple[str, ...]:
-        """Return names of the built-in tasks, sorted."""
-        return tuple(sorted(builtin_tasks()))
+        """Return names of the installed tasks, sorted."""
+        return tuple(sorted(task_names()))
 
     @classmethod
     def load(
@@ -67,7 +67,7 @@ class Task:
             InputError: A parameter is out of range.
             ScenarioError: The file is wrong.
         """
-        if name_or_path in builtin_tasks():
+        if is_task(name_or_path):
             _check_no_condition(name_or_path, condition)
             return cls.from_mapping(generated(name_or_path, seed, parameters), seed)
         document = _written(name_or_path)
@@ -116,7 +116,7 @@ class Task:
             UnknownNameError: There is neither a task nor a file of that name.
             ScenarioError: The file cannot be read.
         """
-        if name_or_path in builtin_tasks():
+        if is_task(name_or_path):
             return None
         document = _written(name_or_path)
         return document if _is_scenario(document) else None

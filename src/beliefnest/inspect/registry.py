@@ -20,7 +20,7 @@ from inspect_ai.model import (
 )
 from inspect_ai.tool import ToolChoice, ToolInfo
 
-from beliefnest.episodes.tasks import builtin_tasks
+from beliefnest.episodes.tasks import task_names
 from beliefnest.errors import InputError
 from beliefnest.inspect.episodes import episode_task
 from beliefnest.inspect.minds import (
@@ -164,7 +164,7 @@ for _name in builtin_names():
     # A scenario that asks no model has nothing to score.
     if any(probe.asks_model for probe in Scenario.load(_name).probes):
         _register(_name)
-for _name in builtin_tasks():
+for _name in task_names():
     _register_episodes(_name)
 
 

@@ -19,10 +19,10 @@ from beliefnest.inspect.task_parts import (
 )
 from beliefnest.llm.reading_answers import read_answer
 from beliefnest.plan.cells import variation_id
+from beliefnest.suites import story_reader
 from beliefnest.suites.stories.data import BatteryItem, StoryItems
 from beliefnest.suites.stories.explaining import explain_answer
 from beliefnest.suites.stories.played_story import PlayedStory
-from beliefnest.suites.stories.suite import READERS
 
 NOWHERE = "in none of them"
 """Answer option for a thing that is in no container."""
@@ -43,7 +43,7 @@ def suite_task(suite: str, file: str | list[str], limit: int | None) -> Task:
     samples = [
         _sample(suite, each, place, number, asked, item, "" if len(files) == 1 else Path(each).stem)
         for each in files
-        for place, asked in enumerate(READERS[suite](Path(each)).whole()[:limit])
+        for place, asked in enumerate(story_reader(suite)(Path(each)).whole()[:limit])
         for number, item in enumerate(asked.items)
     ]
     if not samples:
@@ -122,7 +122,7 @@ def story_answer() -> Scorer:
 
 def _explanation(sample: dict[str, object]) -> tuple[str, ...]:
     """Return the nest's answer to a question and the reasons for it, in lines."""
-    stories = READERS[str(sample["suite"])](Path(str(sample["file"]))).whole()
+    stories = story_reader(str(sample["suite"]))(Path(str(sample["file"]))).whole()
     asked = stories[int(str(sample["story"]))]
     item = asked.items[int(str(sample["item"]))]
     with PlayedStory.play(asked.story, asked=[item.question], knowing=asked.knowing) as played:

@@ -2,14 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.metadata import entry_points
 from typing import cast
 
-from beliefnest.errors import BeliefNestError, InputError, ModelError
-from beliefnest.importing import imported_object, is_importable, is_object_name
+from beliefnest.errors import BeliefNestError, ModelError
+from beliefnest.importing import installed_names, is_importable, is_object_name, made_object
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
-from beliefnest.world.texts import quoted
 
 MODEL_GROUP = "beliefnest.models"
 """Group of entry points, each of which names a class or function that makes a model."""
@@ -50,7 +48,7 @@ class OwnModel:
 
 def installed_models() -> tuple[str, ...]:
     """Return the names of models that installed packages offer."""
-    return tuple(sorted({each.name for each in entry_points(group=MODEL_GROUP)}))
+    return installed_names(MODEL_GROUP)
 
 
 def names_own_model(name: str) -> bool:
@@ -68,25 +66,7 @@ def own_model(name: str) -> OwnModel:
     Raises:
         InputError: There is no such object, or it makes no model.
     """
-    (installed,) = tuple(entry_points(group=MODEL_GROUP, name=name))[:1] or (None,)
-    made = imported_object(name if installed is None else installed.value, "model")
-    if isinstance(made, type) or not callable(getattr(made, "answer", None)):
-        if not callable(made):
-            raise InputError(
-                f"{quoted(name)} is no class and no function; name one that makes a model"
-            )
-        try:
-            made = made()
-        except BeliefNestError:
-            raise
-        except (Exception, SystemExit) as error:  # Code of users may raise anything.
-            raise InputError(
-                f"{quoted(name)} cannot be called without arguments: {type(error).__name__}: "
-                f"{error}"
-            ) from error
-    if not callable(getattr(made, "answer", None)):
-        raise InputError(
-            f"{quoted(name)} makes no model: {type(made).__name__} has no method "
-            "answer(messages, sampling), which returns an Answer"
-        )
-    return OwnModel(name, cast(Model, made))
+    model = made_object(
+        name, MODEL_GROUP, "model", "answer", "(messages, sampling), which returns an Answer"
+    )
+    return OwnModel(name, cast(Model, model))

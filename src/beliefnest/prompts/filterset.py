@@ -1,13 +1,12 @@
 """Sets of prompt filters: built-in, installed and user-defined ones."""
 
-import functools
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from importlib.metadata import EntryPoint, entry_points
 from types import MappingProxyType
 from typing import Any, Generic, ParamSpec
 
 from beliefnest.errors import InputError
+from beliefnest.importing import installed_entries, load, told_entry
 
 FILTER_GROUP = "beliefnest.filters"
 """Group of entry points for installed filters. Each entry point is a `PromptFilter`; it is
@@ -99,16 +98,11 @@ def installed_filters(built_in: FilterSet) -> FilterSet:
     Raises:
         InputError: An installed filter cannot be loaded, or its name is in use.
     """
-    found = sorted(entry_points(group=FILTER_GROUP), key=lambda entry: (entry.name, entry.value))
-    return functools.reduce(_with_entry, found, built_in)
-
-
-def _with_entry(filters: FilterSet, entry: EntryPoint) -> FilterSet:
-    package = entry.dist.name if entry.dist is not None else entry.module
-    try:
-        return filters.extended([entry.load()])
-    except Exception as error:
-        raise InputError(
-            f"filter {entry.name!r} of the installed package {package} ({entry.value}) "
-            f"cannot be used: {error}"
-        ) from error
+    filters = built_in
+    for entry in installed_entries(FILTER_GROUP):
+        added = load(entry, "filter")
+        try:
+            filters = filters.extended([added])
+        except InputError as error:
+            raise InputError(f"{told_entry(entry, 'filter')} cannot be used: {error}") from error
+    return filters

@@ -1,25 +1,33 @@
-"""Packages of installed prompt filters, as files of a supplement.
+"""Packages of others with filters, policies, tasks and worlds, as files of a supplement.
 
 They stand in a folder from which Python finds them, also as entry points, if `PYTHONPATH` names it.
 """
 
 import importlib.util
 from collections.abc import Iterator, Sequence
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
+from itertools import groupby
 from pathlib import Path
 
-from beliefnest.prompts.filterset import FILTER_GROUP
+from beliefnest.importing import installed_entries
 
 PACKAGES = "packages"
 """Folder of the packages in a supplement."""
 
 _INFO = f"{PACKAGES}/filters_of_this_supplement-1.dist-info"
+_GROUPS = tuple(f"beliefnest.{what}" for what in ("filters", "policies", "tasks", "worlds"))
+"""Groups of entry points on which the cells of a study may depend."""
 _METADATA = b"Metadata-Version: 2.1\nName: filters-of-this-supplement\nVersion: 1\n"
 
 
 def filter_packages() -> dict[str, bytes]:
-    """Return the files of all packages with installed filters, by path; empty: there are none."""
-    entries = sorted(entry_points(group=FILTER_GROUP), key=lambda each: (each.name, each.value))
+    """Return the files of all packages with such plugins, by path; empty: there are none."""
+    entries = [
+        each
+        for group in _GROUPS
+        for each in installed_entries(group)
+        if each.module.partition(".")[0] != "beliefnest"
+    ]
     if not entries:
         return {}
     files = {
@@ -47,5 +55,8 @@ def _sources(package: str) -> Iterator[tuple[str, bytes]]:
 
 
 def _declared(entries: Sequence[EntryPoint]) -> str:
-    lines = dict.fromkeys(f"{entry.name} = {entry.value}" for entry in entries)
-    return "\n".join([f"[{FILTER_GROUP}]", *lines, ""])
+    groups = groupby(entries, lambda entry: entry.group)
+    return "".join(
+        f"[{group}]\n" + "".join(f"{entry.name} = {entry.value}\n" for entry in declared)
+        for group, declared in groups
+    )

@@ -13,7 +13,7 @@ import msgspec
 
 from beliefnest.episodes.policies import file_of_policy, text_of_policy
 from beliefnest.episodes.task import Task
-from beliefnest.episodes.tasks import builtin_tasks
+from beliefnest.episodes.tasks import is_task
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import read_regular_text, replace_file
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template
@@ -88,7 +88,7 @@ class Inputs:
         Raises:
             BeliefNestError: There is no such task, or its file cannot be read.
         """
-        if name in builtin_tasks():
+        if is_task(name):
             return
         document = Task.scenario_document(name) or read_document(name)
         self.add_document("tasks", Task.load(name).name, document)

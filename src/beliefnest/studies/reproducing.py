@@ -9,7 +9,7 @@ import msgspec
 
 from beliefnest.episodes.policies import is_own_policy, policy_of_file
 from beliefnest.episodes.task import Task
-from beliefnest.episodes.tasks import builtin_tasks
+from beliefnest.episodes.tasks import is_task
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import read_regular_text
 from beliefnest.llm.budget import RunLimits
@@ -274,9 +274,9 @@ class _Inputs:
         source = recorded.task
         if recorded.task in self.index.tasks:
             source = str(self.folder / self.index.tasks[recorded.task])
-        elif recorded.task not in builtin_tasks():
+        elif not is_task(recorded.task):
             raise InputError(f"its task {quoted(recorded.task)} is not among the inputs")
-        document = None if source in builtin_tasks() else Task.scenario_document(source)
+        document = None if is_task(source) else Task.scenario_document(source)
         task = task_of_cell(recorded, source, document)
         policies = {agent: self._here(name) for agent, name in recorded.policies.items()}
         return EpisodeCell(replace(recorded, policies=policies), task, draws=True)

@@ -1,9 +1,33 @@
 """Suites: batteries of stories with questions, and of films with judgments of people."""
 
-__all__ = ["FILMS", "SUITES"]
+from typing import Any
+
+from beliefnest.errors import UnknownNameError
+from beliefnest.importing import installed, installed_names, load
+
+__all__ = ["FILMS", "story_reader", "suite_names"]
 
 FILMS = "food-trucks"
 """Name of the suite of films."""
 
-SUITES = ("hi-tom", "tomi", "stories", FILMS)
-"""Names of the suites."""
+_GROUP = "beliefnest.suites"
+"""Group of entry points by name of a suite of stories: functions of a file, and of the numbers of
+its rows (None: all), that return `suites.stories.data.ReadStories`."""
+
+
+def suite_names() -> tuple[str, ...]:
+    """Return the names of the installed suites."""
+    return (*installed_names(_GROUP), FILMS)
+
+
+def story_reader(name: str) -> Any:
+    """Return the function that reads the files of a suite of stories.
+
+    Raises:
+        UnknownNameError: There is no such suite.
+        InputError: It cannot be imported.
+    """
+    entry = installed(_GROUP, name)
+    if entry is None:
+        raise UnknownNameError(f"no suite {name!r}; there are {', '.join(suite_names())}")
+    return load(entry, "suite")

@@ -8,7 +8,7 @@ from tests.children import children
 
 from beliefnest.errors import BodyError, InputError
 from beliefnest.worlds.by_name import Worlds
-from beliefnest.worlds.minecraft.embedded import EmbeddedWorld, launched
+from beliefnest.worlds.minecraft.embedded import EmbeddedWorld
 from beliefnest.worlds.minecraft.launching import Launch, ahead
 from beliefnest.worlds.process_limits import ProcessLimits
 
@@ -18,7 +18,7 @@ def test_a_launch_serves_one_world_or_is_killed():
     before = children()
     with ahead("embedded", 3) as launch:
         (pid,) = children() - before
-        with Worlds(3, begun=launched(3, launch)) as worlds:
+        with Worlds(3, begun=launch.worlds(3)) as worlds:
             world = worlds.lend("embedded")
             assert world.inner.pid == pid
             assert "node" in world.versions

@@ -10,9 +10,15 @@ from urllib.parse import parse_qsl, urlencode
 
 from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.policies.simple import Person, Program, Random, Scripted
-from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
+from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.files import read_regular_text
-from beliefnest.importing import imported_object, is_object_name, text_of_object
+from beliefnest.importing import (
+    installed,
+    installed_names,
+    is_object_name,
+    made_object,
+    text_of_object,
+)
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import listed
@@ -55,6 +61,9 @@ POLICIES = (
 )
 """Forms of the names that `resolve_policy` accepts."""
 
+_GROUP = "beliefnest.policies"
+"""Group of entry points, each of which names a class or function that makes a policy."""
+
 _HIGHEST = 4
 _READ = ("program", "scripted")
 """Policies that are read from files."""
@@ -71,7 +80,8 @@ def resolve_policy(
         name: Name in one of the forms of `POLICIES`. In a file of `scripted`, lines of `---`
             separate the programs. A model is `offline` or `PROVIDER:NAME`; its settings are those
             of `ModelSettings`, where `system` is a file. A class of one's own, or a function that
-            makes a policy, is called without arguments.
+            makes a policy, is called without arguments; an installed package may name it by an
+            entry point of the group `beliefnest.policies`.
         environment: Variables with keys and base URLs of models; None: those of the process.
         connection: Connection to models; None: retries and limits only.
 
@@ -97,9 +107,14 @@ def resolve_policy(
     if name in _WITHOUT_OPTIONS:
         return _WITHOUT_OPTIONS[name]()
     if is_own_policy(name):
-        return _of_user(name)
-    near = difflib.get_close_matches(kind, sorted(_KINDS), n=1)  # A kind is nearest to itself.
-    forms = [form for form in POLICIES if form.partition(":")[0] in near] or POLICIES
+        policy: Policy = made_object(
+            name, _GROUP, "policy", "act", "(view), which returns a program"
+        )
+        return policy
+    named = (*POLICIES, *installed_names(_GROUP))
+    kinds = {form.partition(":")[0] for form in named} - {"MODULE", "FILE.py"}
+    near = difflib.get_close_matches(kind, sorted(kinds), n=1)  # A kind is nearest to itself.
+    forms = [form for form in named if form.partition(":")[0] in near] or named
     raise UnknownNameError(f"there is no policy {quoted(name)}; write {listed(forms, 'or')}")
 
 
@@ -129,33 +144,9 @@ def _planning(kind: str, order: int) -> Policy:
 
 def is_own_policy(name: str) -> bool:
     """Return True if a policy is a Python object that a user names: code that would be imported."""
-    return name.partition(":")[0] not in _KINDS and is_object_name(name)
-
-
-def _of_user(name: str) -> Policy:
-    """Return a policy of a class, or of a function, of the user's own."""
-    made = imported_object(name, "policy")
-    if not callable(made):
-        raise InputError(
-            f"{quoted(name)} is no class and no function; name one that makes a policy"
-        )
-    try:
-        policy = made()
-    except TypeError as error:
-        raise InputError(
-            f"{quoted(name)} cannot be called without arguments: {error}; give them defaults"
-        ) from error
-    except BeliefNestError:
-        raise
-    except (Exception, SystemExit) as error:  # Code of users may raise anything.
-        raise InputError(f"{quoted(name)} raised {type(error).__name__}: {error}") from error
-    if not callable(getattr(policy, "act", None)):
-        raise InputError(
-            f"{quoted(name)} makes no policy: {type(policy).__name__} has no method act(view), "
-            "which returns a program"
-        )
-    found: Policy = policy
-    return found
+    if name.partition(":")[0] in _KINDS:
+        return False
+    return is_object_name(name) or installed(_GROUP, name) is not None
 
 
 def draws_by_seed(name: str) -> bool:
@@ -181,7 +172,8 @@ def text_of_policy(name: str) -> str:
         InputError: The file cannot be read.
     """
     if is_own_policy(name):
-        return text_of_object(name)
+        entry = installed(_GROUP, name)
+        return text_of_object(name if entry is None else entry.value)
     file = _system_file(name)
     if file:
         return ModelSettings.of_file(file).system or ""

@@ -1,34 +1,28 @@
-"""Built-in tasks; each module generates instances of a task from a seed."""
+"""Tasks by name; the module of each generates instances of it from a seed."""
 
-import importlib
 import inspect
 import random
 from collections.abc import Mapping
 from typing import Any
 
 from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.importing import installed, installed_names, load
 from beliefnest.world.texts import quoted
 
-__all__ = ["builtin_tasks", "generated", "parameters_of"]
+__all__ = ["generated", "is_task", "parameters_of", "task_names"]
 
-_TASKS: Mapping[str, str] = {
-    "blueprint": "blueprint",
-    "help-find": "help_find",
-    "hide-and-seek": "hide_and_seek",
-    "joint-lift": "joint_lift",
-    "kitchen": "kitchen",
-    "recipe": "recipe",
-    "tell-what-is-needed": "tell_what_is_needed",
-    "watch-and-help": "watch_and_help",
-    "watchman": "watchman",
-    "what-happened-here": "what_happened_here",
-    "whom-to-trust": "whom_to_trust",
-}
+_GROUP = "beliefnest.tasks"
+"""Group of entry points by name of the task: modules with `PARAMETERS` and `instance`."""
 
 
-def builtin_tasks() -> Mapping[str, str]:
-    """Return the names of the tasks' modules, by name of the task."""
-    return _TASKS
+def task_names() -> tuple[str, ...]:
+    """Return the names of the installed tasks, those of this package first."""
+    return installed_names(_GROUP)
+
+
+def is_task(name: str) -> bool:
+    """Return True if there is an installed task of a name."""
+    return installed(_GROUP, name) is not None
 
 
 def parameters_of(name: str) -> Mapping[str, tuple[int, int, int]]:
@@ -69,4 +63,9 @@ def source_of(name: str) -> str:
 
 
 def _module(name: str) -> Any:
-    return importlib.import_module(f"beliefnest.episodes.tasks.{_TASKS[name]}")
+    entry = installed(_GROUP, name)
+    if entry is None:
+        raise UnknownNameError(
+            f"there is no task {quoted(name)}; there are {', '.join(task_names())}"
+        )
+    return load(entry, "task")

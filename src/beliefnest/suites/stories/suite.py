@@ -1,21 +1,12 @@
 """Suites: answer all questions of a file of stories, and score the answers."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from beliefnest.suites.stories.answer_check import data_fault
-from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, read_items
+from beliefnest.suites.stories.data import BatteryItem, StoryItems
 from beliefnest.suites.stories.explaining import explain_answer
-from beliefnest.suites.stories.own import read_own
 from beliefnest.suites.stories.played_story import PlayedStory, StoryAnswer
-from beliefnest.suites.stories.tomi import read_tomi
-
-READERS: Mapping[str, Callable[..., ReadStories]] = {
-    "hi-tom": read_items,
-    "tomi": read_tomi,
-    "stories": read_own,
-}
-"""Readers of files by the name of the suite; their arguments are the file and rows of it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from beliefnest.errors import BodyError, BodyLostError
+from beliefnest.importing import part
 from beliefnest.world.seeds import checked_seed
 from beliefnest.world.shell_limits import low_limits
 from beliefnest.worlds.minecraft.channel import PROTOCOL, Channel
@@ -85,9 +86,7 @@ class Launch:
 
     def worlds(self, seed: int) -> "Mapping[str, World]":
         """Return the embedded world of this launch, by its name; the launch had the same seed."""
-        from beliefnest.worlds.minecraft.embedded import EmbeddedWorld
-
-        return {"embedded": EmbeddedWorld(seed, launch=self)}
+        return {"embedded": part("launched_world")(seed, launch=self)}
 
     def kill(self) -> None:
         """Kill the process, unless a world has taken it."""

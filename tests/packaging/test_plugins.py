@@ -1,0 +1,91 @@
+"""Packages of others add worlds, tasks, policies, filters, suites and commands."""
+
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from tests.installing import install
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.prompts import Renderer
+from beliefnest.prompts.builtin import BUILT_IN
+from beliefnest.prompts.filterset import installed_filters
+from beliefnest.worlds.names import check_world
+
+PAGE = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
+STORY = """1 Sally entered the kitchen.
+2 Anne entered the kitchen.
+3 The apple is in the blue_box.
+4 Sally exited the kitchen.
+5 Anne moved the apple to the red_box.
+6 Anne exited the kitchen."""
+
+
+@pytest.fixture
+def garden(tmp_path, monkeypatch):
+    """Install the package of the page."""
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    (declared,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    (tmp_path / "garden.py").write_text(code, encoding="utf-8")
+    groups = tomllib.loads(declared)["project"]["entry-points"]
+    lines = (
+        f"[{group}]\n" + "".join(f"{name} = {value}\n" for name, value in named.items())
+        for group, named in groups.items()
+    )
+    install(tmp_path, "garden", "\n".join(lines))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.usefixtures("garden")
+def test_a_package_adds_one_of_each(capsys):
+    assert run_command_line(["list", "--json"]) == 0
+    shown = json.loads(capsys.readouterr().out)
+    added = (("worlds", "meadow"), ("tasks", "weeding"), ("suites", "riddles"))
+    assert all(name in shown[kind] for kind, name in added)
+    assert run_command_line(["water", "--times", "2"]) == 0
+    assert capsys.readouterr().out == "drip drip \n"
+    assert run_command_line(["--help"]) == 0
+    assert re.search(r"Of other packages:\n +water +garden\n", capsys.readouterr().out)
+    play = [
+        "play",
+        "weeding",
+        "--world",
+        "meadow",
+        "--agent",
+        "bob=wait",
+        "--rounds",
+        "1",
+        "--json",
+    ]
+    assert run_command_line([*play, "--set", "weeds=3"]) == 1
+    assert json.loads(capsys.readouterr().out)["success"] is False
+    row = {"story": STORY, "question": "Where is the apple really?", "answer": "red_box"}
+    Path("riddles.json").write_text(json.dumps([row]), encoding="utf-8")
+    assert (
+        run_command_line(["suite", "riddles", "--data", "riddles.json", "--world", "meadow"]) == 0
+    )
+    # A process looks for filters once, when it renders first.
+    renderer = Renderer(installed_filters(BUILT_IN))
+    scenario = bn.Scenario.load("sally-anne", condition=1)
+    with bn.Nest.open(scenario, world="meadow", renderer=renderer) as nest:
+        assert nest["/sally"].render("{{ branch | loud }}") == "SALLY"
+
+
+def test_what_cannot_be_used_is_told(tmp_path, monkeypatch):
+    site = tmp_path / "site"
+    install(site, "one", "[beliefnest.worlds]\nmars = no_such_module:mars\n")
+    monkeypatch.syspath_prepend(str(site))
+    check = r"the world 'mars' of the installed package one \(no_such_module:mars\) cannot be imp"
+    with pytest.raises(InputError, match=check):
+        check_world("mars")
+    with pytest.raises(UnknownNameError, match="there are embedded, scripted, mars, embedded://"):
+        check_world("venus")
+    install(site, "other", "[beliefnest.worlds]\nmars = json:loads\n")
+    monkeypatch.syspath_prepend(str(site))
+    with pytest.raises(InputError, match="several installed packages declare 'mars'"):
+        check_world("mars")
