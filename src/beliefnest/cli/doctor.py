@@ -21,7 +21,7 @@ _HIGH = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class CheckResult:
     """Result of one check.
 
     Attributes:
@@ -60,11 +60,11 @@ def examine(server: str | None = None, *, as_json: bool, warm: bool = False) -> 
     return 0 if all(finding.ok for finding in found) else _FAILED
 
 
-def _find(name: str, check: Callable[[], str]) -> Finding:
+def _find(name: str, check: Callable[[], str]) -> CheckResult:
     try:
-        return Finding(name, True, check())
+        return CheckResult(name, True, check())
     except BeliefNestError as error:
-        return Finding(name, False, " ".join(str(error).split()))
+        return CheckResult(name, False, " ".join(str(error).split()))
 
 
 def _python() -> str:
