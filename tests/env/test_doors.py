@@ -8,7 +8,7 @@ from tests.profiles import few_by_day
 import beliefnest as bn
 from beliefnest.env import parallel_env
 from beliefnest.env.actions import Call
-from beliefnest.nest.acting.imagination import Performer
+from beliefnest.episodes.imagination import Performer
 from beliefnest.scenarios.scenario import Scenario
 
 OFF, ON = ("lever[face=floor,facing=north,powered=" + on + "]" for on in ("false", "true"))

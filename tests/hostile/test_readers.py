@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 from tests.hostile.limits import ends_well
 from tests.profiles import at_night, few_by_day
 
+from beliefnest.cli.scenario_editing import edited
 from beliefnest.errors import BeliefNestError
 from beliefnest.llm.stored_exchange import decode_exchange
-from beliefnest.scenarios.editing import edited
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.studies.archive import damaged_files, unpack, write_zip

@@ -6,11 +6,11 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from beliefnest.cli.scenario_editing import drawn_starter, edited
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import read_regular_text, replace_file
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.document import Document
-from beliefnest.scenarios.editing import drawn_starter, edited
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names
 from beliefnest.scenarios.yaml_reading import parse_yaml

@@ -10,8 +10,8 @@ from beliefnest.belief.view import State
 from beliefnest.episodes.considered import SearchTrace
 from beliefnest.episodes.counted_model import CountedModel
 from beliefnest.episodes.decided import Ended, Spent
+from beliefnest.episodes.imagination import Imagination
 from beliefnest.errors import PathError
-from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.prompts.mind_view import MindView
 from beliefnest.scenarios.goals import Goal

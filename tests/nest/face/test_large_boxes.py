@@ -7,7 +7,7 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.cli.exchange import export_run, import_run
-from beliefnest.nest.acting.imagination import Performer
+from beliefnest.episodes.imagination import Performer
 from beliefnest.nest.past.percepts import percepts_of
 from beliefnest.skills.calls import Call
 from beliefnest.world import terrain

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
+from beliefnest.episodes.imagination import Imagination
 from beliefnest.episodes.policies.distance import MindFacts
 from beliefnest.facts.kinds import Fact, agrees
-from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call
 from beliefnest.world.claims import Claim

@@ -13,6 +13,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from beliefnest.episodes.agent_view import Brief
+from beliefnest.episodes.imagination import Imagination, Performer
 from beliefnest.episodes.policies.candidates import (
     calls_of,
     claims_of_mind,
@@ -21,7 +22,6 @@ from beliefnest.episodes.policies.candidates import (
     said,
 )
 from beliefnest.episodes.policies.distance import distance, held, is_visible
-from beliefnest.nest.acting.imagination import Imagination, Performer
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call
 from beliefnest.world.doors import is_door

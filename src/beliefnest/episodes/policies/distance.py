@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable
 
+from beliefnest.episodes.imagination import Imagination
 from beliefnest.facts.kinds import GoalCondition
 from beliefnest.facts.states import ViewFacts
-from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.paths import BeliefPath, normalised
 from beliefnest.world.registry import Registry

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from beliefnest.episodes.agent_view import AgentView, Brief
 from beliefnest.episodes.considered import SearchTrace, TriedCourse
+from beliefnest.episodes.imagination import Imagination
 from beliefnest.episodes.policies.candidates import items_of
 from beliefnest.episodes.policies.course_planner import (
     OPEN,
@@ -21,7 +22,6 @@ from beliefnest.episodes.policies.course_planner import (
     Planner,
     SearchBounds,
 )
-from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.skills.calls import Call, program_of
 from beliefnest.world.values import Position
 

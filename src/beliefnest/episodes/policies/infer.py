@@ -15,6 +15,7 @@ from beliefnest.belief.grounds import Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
+from beliefnest.episodes.imagination import Imagination
 from beliefnest.episodes.policies.course_planner import USUAL, SearchBounds
 from beliefnest.episodes.policies.expecting import Expecting, GoalShares, combinations, uniform
 from beliefnest.episodes.policies.search import Search
@@ -24,7 +25,6 @@ from beliefnest.facts.kinds import Pursuit
 from beliefnest.geometry.free_lines import can_use, eye_in
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.ways import Floor
-from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.claims import ClaimKind
 from beliefnest.world.event_kinds import EventKind

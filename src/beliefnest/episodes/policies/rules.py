@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.episodes.agent_view import GO_ON, AgentView
+from beliefnest.episodes.imagination import Imagination
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, items_of, said
 from beliefnest.errors import UnknownNameError
-from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call, program_of
 from beliefnest.world.texts import quoted

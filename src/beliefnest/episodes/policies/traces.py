@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from beliefnest.belief.grounds import ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
+from beliefnest.episodes.imagination import Imagination, Performer
 from beliefnest.episodes.policies.course_planner import Planner, SearchBounds
-from beliefnest.nest.acting.imagination import Imagination, Performer
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position

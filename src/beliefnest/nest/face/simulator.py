@@ -2,14 +2,14 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING, Literal
 
 from beliefnest.belief.arrays import UNKNOWN
 from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BranchError, InputError, WorldError
+from beliefnest.importing import part
 from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.given import check_branch_name, tick_of, whole
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.shown import ShownSimulator
@@ -24,11 +24,11 @@ from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import is_well_formed
 from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
 from beliefnest.worlds.protocol import ProgramPast, ProgramResult
-from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.nest_world import ScriptedBody, ScriptedNestWorld
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
+    from beliefnest.episodes.imagination import Imagination
     from beliefnest.llm.messages import Model
 
 Mode = Literal["control", "follow"]
@@ -324,7 +324,7 @@ class Simulator(ShownSimulator):
         return Simulator(Engine(recording, ScriptedNestWorld()), self._path)
 
     @in_turn
-    def imagination(self, depth: int = 1, pace: int = 1, tick: int | None = None) -> Imagination:
+    def imagination(self, depth: int = 1, pace: int = 1, tick: int | None = None) -> "Imagination":
         """Return the state at a tick as a world of its own, to try out courses without recording.
 
         That world is scripted, whatever the real world is: see docs/scripted-world.md.
@@ -355,14 +355,10 @@ class Simulator(ShownSimulator):
             recording.history.advance(moment.timeline, forest, moment.entries)
         speech = -(-forest.context.options.speech_ticks // pace)
         grounds = recording.remembered.setdefault("grounds of imaginations", {})
-        return Imagination.of(
-            forest,
-            self._path,
-            depth,
-            moment.tick,
-            cast(dict[bytes, Ground], grounds),
-            speech_ticks=speech,
+        imagination: Imagination = part("imagination")(
+            forest, self._path, depth, moment.tick, grounds, speech_ticks=speech
         )
+        return imagination
 
 
 def check_senses(senses: object) -> None:

@@ -3,8 +3,8 @@
 import pytest
 import yaml
 
+from beliefnest.cli.scenario_editing import drawn_starter, edited
 from beliefnest.errors import InputError
-from beliefnest.scenarios.editing import drawn_starter, edited
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_file
 
