@@ -54,7 +54,6 @@ def kept_worlds(lent: Lent) -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr("beliefnest.worlds.minecraft.launching.ahead", nothing_ahead)
-        patched.setattr("beliefnest.cli.run.Worlds", shared)
         patched.setattr("beliefnest.plan.worker.Worlds", shared)
         patched.setattr("beliefnest.nest.face.nest.open_world", lent_world)
         yield

@@ -312,7 +312,7 @@ def test_an_interrupted_run_goes_on_where_it_was(
 
     server.will(server.says(GOOD))
     with monkeypatch.context() as patched:
-        patched.setattr("beliefnest.cli.run.read_condition", interrupt)
+        patched.setattr("beliefnest.cli.run_cells.read_condition", interrupt)
         assert run(scenario="two.yaml") == 130
     assert report()["status"] == "interrupted"
     assert run(scenario="two.yaml") == 0

@@ -178,9 +178,10 @@ class RunFolder:
         if scenario.templates:
             replace_file(templates_file(self.path / _SCENARIO), _json(scenario.templates))
 
-    def cell(self, folder: Path) -> ConditionFolder:
-        """Return the folder of one condition; `folder` is relative to the run folder."""
-        return ConditionFolder(self.path / folder)
+    @property
+    def ledger(self) -> Path:
+        """File with the usage of each answer, one line each."""
+        return self.path / "spent.jsonl"
 
     @property
     def answers(self) -> Path:

@@ -4,47 +4,36 @@ import json
 import math
 import os
 import sys
-import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from datetime import datetime
-from pathlib import Path
 from typing import Any, Literal
 
 from rich.text import Text
 
 from beliefnest.belief.kernels_ahead import kernels_ahead
-from beliefnest.cli.accounts import accounts
-from beliefnest.cli.console import Printed, progress_on, report_text, stdout
-from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
+from beliefnest.cli.console import Printed, report_text, stdout
+from beliefnest.cli.folder import RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table
 from beliefnest.cli.options import RunOptions
-from beliefnest.cli.pictures import read_condition
-from beliefnest.cli.report import OutcomeRow, outcome_json, outcome_table, report_json
+from beliefnest.cli.report import OutcomeRow, outcome_table, report_json
 from beliefnest.cli.run_cells import RunCell, plan_run_cells
 from beliefnest.cli.run_report import report_html
 from beliefnest.cli.streams import noted_warnings
-from beliefnest.cli.visits import check_visits, visited
+from beliefnest.cli.visits import check_visits
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
-from beliefnest.files import replace_file
-from beliefnest.llm.budget import RunLimits, RunSpending
-from beliefnest.llm.claim_reader import claims_from_model
-from beliefnest.llm.failures import UnavailableModelError
-from beliefnest.llm.messages import Model, Sampling, Usage
+from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.resolve import Connection, check_model, open_model
-from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.versions import own_versions
-from beliefnest.pictures.overview import ConditionPicture, overview
+from beliefnest.pictures.overview import overview
+from beliefnest.plan.terms import Terms
+from beliefnest.plan.worker import Worker
 from beliefnest.scenarios.judging import without_result_words
-from beliefnest.scenarios.probing import Asking
-from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.table import lost
 from beliefnest.timeline.store import Journal
-from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.seeds import checked_seed
-from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.names import check_world
 
@@ -74,8 +63,14 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
     check_world(options.full_world)
     check_visits(options.embody or (), options.full_world)
     _check_numbers(options)
+    kept = None if options.out is None else RunFolder(options.out).answers
+    connection = Connection(
+        answer_limits=options.model_settings.answer_limits,
+        cache=options.answers or kept,
+        cache_mode=options.cache,
+    )
     for name in options.asked_models:
-        check_model(name, os.environ, _connection(options, RunSpending(), options.out))
+        check_model(name, os.environ, connection)
     first = scenarios[0]
     settings = options.settings
     # Each condition may name its own template.
@@ -91,21 +86,22 @@ def _run_in(
 ) -> int:
     """Run the conditions in an open folder; return the exit status."""
     first, settings = scenarios[0], options.settings
+    cells = plan_run_cells(scenarios, settings, folder, options.embody or ())
     run = _Run(options, folder)
-    cells = plan_run_cells(scenarios, options.named_models, options.repeat, options.seed)
     status: RunStatus = "failed"
     try:
         with (
             noted_warnings() as warned,
-            Worlds(options.seed, begun=launch.worlds(options.seed) if launch else None) as worlds,
+            ExitStack() as stack,
             kernels_ahead(),
         ):
+            worker = Worker(stack, launch, options.seed, caught=ModelError)
             for cell in cells:
-                run.do(cell, worlds)
+                run.do(cell, worker)
                 if run.unavailable:
                     break
-        if len(run.pictures) == len(cells) > 1:
-            shown = run.pictures[: len(scenarios)]
+        if len(cells[0].pictures) == len(cells) > 1:
+            shown = cells[0].pictures[: len(scenarios)]
             overview(shown, first.description or first.name).save(folder.picture)
         status = "failed" if run.failures else "done"
     except KeyboardInterrupt:
@@ -113,7 +109,7 @@ def _run_in(
         raise
     finally:
         report = report_json(first.name, settings, status, run.results, run.failures)
-        report["versions"] = _versions(cells, folder)
+        report["versions"] = _versions(cells)
         report["scores"] = score_runs(run.results, run.failures)
         folder.write_report(report)
         folder.write_page(_page(report, options, first))
@@ -126,72 +122,47 @@ def _run_in(
     return 0 if all(result["ok"] for result in run.results) else 1
 
 
-def _connection(options: RunOptions, budget: RunSpending, folder: Path | None) -> Connection:
-    """Return the connection to models; the cache is in the run folder unless another is named."""
-    kept = None if folder is None else RunFolder(folder).answers
-    return Connection(
-        budget=budget,
-        answer_limits=options.model_settings.answer_limits,
-        cache=options.answers or kept,
-        cache_mode=options.cache,
-    )
-
-
 class _Run:
-    """A run in progress: its folder, its models, and its results so far."""
+    """A run in progress: its folder, its terms, and its results so far."""
 
     def __init__(self, options: RunOptions, folder: RunFolder) -> None:
-        self._options = options
         self.folder = folder
-        self.budget = RunSpending(RunLimits(options.max_tokens, options.max_cost))
-        connection = replace(
-            _connection(options, self.budget, folder.path), record=folder.exchanges
+        terms = Terms(
+            answers=options.answers or folder.answers,
+            ledger=folder.ledger,
+            runs=None,
+            limits=RunLimits(options.max_tokens, options.max_cost),
+            cache_mode=options.cache,
+            record=folder.exchanges,
         )
-        self._models = {
-            name: open_model(name, os.environ, connection) for name in options.asked_models
-        }
+        connection = terms.connection(options.model_settings.answer_limits)
+        # Answers of a file go on from cell to cell.
+        models = {name: open_model(name, os.environ, connection) for name in options.asked_models}
+        self._terms = replace(terms, models=models)
         self.rows: list[OutcomeRow] = []
-        self.pictures: list[ConditionPicture] = []
         self.results: list[dict[str, Any]] = []
         self.failures: list[dict[str, object]] = []
         self.unavailable = False
 
-    def do(self, cell: RunCell, worlds: Worlds) -> None:
-        """Run a cell and keep its result, unless an earlier part of the run did so."""
-        place = self.folder.cell(cell.folder)
-        known = place.result()
-        if known is not None:
-            self.budget.add(Usage(**known["usage"]))
-            self._keep(cell, known)
-            return
-        place.begin()
-        try:
-            model = self._models[cell.model]
-            hook = self._hook(cell.seed)
-            picture = _run(cell, place, model, hook, self._options, worlds)
-        except ModelError as error:
-            self.unavailable = isinstance(error, UnavailableModelError)
-            failure = {"error": str(error), "kind": type(error).__name__}
-            key = {"condition": cell.scenario.condition, "model": cell.model, "seed": cell.seed}
-            outcome = lost(failure, is_judged=True)["outcome"]
-            self.failures.append({**key, **failure, "outcome": outcome})
-            return
-        self.pictures.append(picture)
-        written = place.result()
-        assert written is not None
-        self._keep(cell, written)
-
-    def _keep(self, cell: RunCell, result: dict[str, Any]) -> None:
+    def do(self, cell: RunCell, worker: Worker) -> None:
+        """Play a cell and keep its result, unless an earlier part of the run did so."""
+        result = cell.place.result()
+        if result is None:
+            content, why = worker.content(cell, self._terms)
+            self.unavailable = bool(why)
+            if content["error"] is not None:
+                outcome = lost(content, is_judged=True)["outcome"]
+                key = {
+                    "condition": cell.key.condition,
+                    "model": cell.key.model,
+                    "seed": cell.key.seed,
+                }
+                self.failures.append({**key, **content, "outcome": outcome})
+                return
+            result = cell.place.result()
+            assert result is not None
         self.results.append(result)
         self.rows.append(OutcomeRow.of(cell.scenario, result))
-
-    def _hook(self, seed: int) -> ClaimsFrom | None:
-        """Return the function that extracts claims from utterances; None: no extraction."""
-        name = self._options.claims_from
-        if name is None:
-            return None
-        temperature = self._options.temperature
-        return claims_from_model(self._models[name], Sampling(temperature, seed))
 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
@@ -231,47 +202,6 @@ def _check_numbers(options: RunOptions) -> None:
         raise InputError(f"the model {twice[0]} is named twice; use --repeat to ask it again")
 
 
-def _run(
-    cell: RunCell,
-    place: ConditionFolder,
-    model: Model,
-    claims_from: ClaimsFrom | None,
-    options: RunOptions,
-    worlds: Worlds,
-) -> ConditionPicture:
-    scenario = cell.scenario
-    settings = options.model_settings
-    sampling = settings.sampling(Sampling(options.temperature, cell.seed))
-    asking = Asking(options.attempts, sampling, settings)
-    started = time.perf_counter()
-    with (
-        progress_on(cell.title) as on_progress,
-        Nest.open(
-            scenario, options.full_world, place.store, cell.seed, worlds, claims_from=claims_from
-        ) as nest,
-    ):
-        with visited(nest, options.embody or ()):
-            outcome = run_scenario(nest, scenario, model, cell.seed, started, on_progress, asking)
-        for number, probe in enumerate(outcome.probes, start=1):
-            place.write_probe(number, probe)
-        with Journal.read(place.store) as journal:
-            picture = read_condition(nest, journal, outcome)
-        told = accounts(nest, outcome)
-        figure = overview([picture], picture.title)
-        figure.save(place.picture)
-        replace_file(place.picture_svg, figure._repr_html_())
-        readings = {} if claims_from is None else {"readings": _readings(nest)}
-    place.write_result({**outcome_json(outcome, cell.model, place.path, told), **readings})
-    return picture
-
-
-def _readings(nest: Nest) -> dict[str, object]:
-    """Return the number of utterances given to the model for claims, and of those that failed."""
-    asked = [each for each in nest.prompts() if "claims_from" in each.detail]
-    failed = [each.error for each in asked if each.answer is None]
-    return {"asked": len(asked), "failed": len(failed), "first": next(iter(failed), None)}
-
-
 def _page(report: Mapping[str, Any], options: RunOptions, scenario: Scenario) -> str:
     return report_html(
         report,
@@ -281,13 +211,13 @@ def _page(report: Mapping[str, Any], options: RunOptions, scenario: Scenario) ->
     )
 
 
-def _versions(cells: Sequence[RunCell], folder: RunFolder) -> Mapping[str, str]:
+def _versions(cells: Sequence[RunCell]) -> Mapping[str, str]:
     """Return versions of programs by name, from the first run file of the run.
 
     If no world could be opened, there is no run file: return the versions of this process.
     """
     for cell in cells:
-        store = folder.cell(cell.folder).store
+        store = cell.place.store
         if store.is_file():
             with suppress(NotBegunError), Journal.read(store) as journal:
                 return journal.records.run().versions
@@ -308,7 +238,7 @@ def _parts(run: _Run, cells: Sequence[RunCell], warned: Mapping[str, str]) -> It
         if any(cell.scenario.condition == number for cell in cells):
             yield Text(f"condition {number}: {about}")
     # The results of each condition, or scores if there are several models or repeats.
-    if len(cells[0].folder.parts) == 1 and len(run.rows) == len(cells):
+    if cells[0].is_flat and len(run.rows) == len(cells):
         yield outcome_table(run.rows, stdout())
         yield from (line for row in run.rows for line in row.notes)
     else:

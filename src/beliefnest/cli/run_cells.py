@@ -1,28 +1,51 @@
 """Cells of a run: one for each model, repeat and condition."""
 
 import re
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from typing import Any
 
+from beliefnest.cli.accounts import accounts
+from beliefnest.cli.console import progress_on
+from beliefnest.cli.folder import ConditionFolder, RunFolder
+from beliefnest.cli.pictures import read_condition
+from beliefnest.cli.report import outcome_json
+from beliefnest.cli.visits import visited
+from beliefnest.files import replace_file
+from beliefnest.nest.face.nest import Nest
+from beliefnest.pictures.overview import ConditionPicture, overview
+from beliefnest.plan.scenario_cells import Cell, CellKey, content_of
+from beliefnest.plan.terms import PlayStage
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.timeline.store import Journal
 
 
 @dataclass(frozen=True, slots=True)
-class RunCell:
-    """One scenario under one condition with one model, once.
+class RunKey(CellKey):
+    """Identity of a cell of a run."""
+
+    @property
+    def seed(self) -> int:
+        """Return the seed of all random numbers of the cell: each repeat adds 1."""
+        return int(self.setting["seed"]) + self.repeat - 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunCell(Cell):
+    """One scenario under one condition with one model, once, with a folder and pictures.
 
     Attributes:
-        scenario: Scenario with its condition applied.
-        model: Name of the model.
-        seed: Seed of every random number; each repeat has another one.
-        folder: Folder of the cell, relative to the run folder.
+        place: Folder of the cell.
+        is_flat: True if the run has one model and one repeat: no title names them.
+        embody: Paths of beliefs that people visit while it is played.
+        pictures: Pictures of the cells of the run that were played; it adds its own.
     """
 
-    scenario: Scenario
-    model: str
-    seed: int
-    folder: Path
+    place: ConditionFolder
+    is_flat: bool
+    embody: Sequence[str]
+    pictures: list[ConditionPicture]
 
     @property
     def title(self) -> str:
@@ -30,39 +53,88 @@ class RunCell:
         parts = [self.scenario.name]
         if self.scenario.condition is not None:
             parts.append(f"condition {self.scenario.condition}")
-        if len(self.folder.parts) > 1:
-            parts += [self.model, f"seed {self.seed}"]
+        if not self.is_flat:
+            parts += [self.key.model, f"seed {self.key.seed}"]
         return ", ".join(parts)
+
+    def play(self, stage: PlayStage) -> dict[str, Any]:
+        """Play and draw the scenario, write everything into its folder, and return the result.
+
+        Raises:
+            BeliefNestError: The scenario, the world or the model failed.
+        """
+        place = self.place
+        place.begin()
+        model = stage.terms.model(self.key.model, self.settings)
+        started = time.perf_counter()
+        with progress_on(self.title) as on_progress, self.opened(stage, place.store) as nest:
+            with visited(nest, self.embody):
+                outcome = self.run_in(nest, model, started, on_progress)
+            for number, probe in enumerate(outcome.probes, start=1):
+                place.write_probe(number, probe)
+            with Journal.read(place.store) as journal:
+                picture = read_condition(nest, journal, outcome)
+            told = accounts(nest, outcome)
+            figure = overview([picture], picture.title)
+            figure.save(place.picture)
+            replace_file(place.picture_svg, figure._repr_html_())
+            readings = {"readings": _readings(nest)} if "claims_from" in self.key.setting else {}
+        result = {**outcome_json(outcome, self.key.model, place.path, told), **readings}
+        place.write_result(result)
+        self.pictures.append(picture)
+        return {"error": None, **result}
+
+
+def _readings(nest: Nest) -> dict[str, object]:
+    """Return the number of utterances given to the model for claims, and of those that failed."""
+    asked = [each for each in nest.prompts() if "claims_from" in each.detail]
+    failed = [each.error for each in asked if each.answer is None]
+    return {"asked": len(asked), "failed": len(failed), "first": next(iter(failed), None)}
 
 
 def plan_run_cells(
-    scenarios: Sequence[Scenario], models: Sequence[str], repeat: int, seed: int
+    scenarios: Sequence[Scenario], setting: dict[str, Any], folder: RunFolder, embody: Sequence[str]
 ) -> list[RunCell]:
     """Return all cells in the order of play.
 
     With one model and one repeat, the folders of conditions are directly in the run folder.
+
+    Args:
+        scenarios: The scenario, under each condition.
+        setting: Settings of the run, with `models` and `repeat`.
+        folder: Folder of the run.
+        embody: Paths of beliefs that people visit.
     """
-    flat = len(models) == 1 and repeat == 1
-    return [
-        RunCell(
-            scenario=scenario,
-            model=model,
-            seed=seed + number,
-            folder=_folder(number, model, models) / condition if not flat else Path(condition),
-        )
-        for number in range(repeat)
-        for model in models
-        for scenario in scenarios
-        for condition in [
-            "run" if scenario.condition is None else f"condition-{scenario.condition}"
-        ]
-    ]
-
-
-def _folder(number: int, model: str, models: Sequence[str]) -> Path:
-    """Return the folder name of a model.
-
-    The number in front separates models whose names differ only in special characters.
-    """
-    name = re.sub(r"[^A-Za-z0-9.]+", "-", model)
-    return Path(f"model-{models.index(model) + 1}-{name}", f"repeat-{number + 1}")
+    models, repeats = setting["models"], setting["repeat"]
+    pictures: list[ConditionPicture] = []
+    flat = len(models) == 1 and repeats == 1
+    found = []
+    for repeat in range(1, repeats + 1):
+        for number, model in enumerate(models, start=1):
+            # The number separates models whose names differ only in special characters.
+            name = re.sub(r"[^A-Za-z0-9.]+", "-", model)
+            above = "" if flat else f"model-{number}-{name}/repeat-{repeat}"
+            for scenario in scenarios:
+                key = RunKey(
+                    scenario=scenario.name,
+                    content=content_of(scenario.text, scenario, None),
+                    condition=scenario.condition,
+                    variation={},
+                    model=model,
+                    template="",
+                    repeat=repeat,
+                    setting=setting,
+                )
+                condition = "run" if key.condition is None else f"condition-{key.condition}"
+                place = ConditionFolder(folder.path / above / condition)
+                found.append(
+                    RunCell(
+                        key=key,
+                        scenario=scenario,
+                        place=place,
+                        is_flat=flat,
+                        embody=embody,
+                        pictures=pictures,
+                    )
+                )
+    return found

@@ -71,12 +71,12 @@ class Worker:
         self._caught = caught
 
     def play(self, cell: Keyed, terms: Terms) -> CellResult:
-        """Play a cell; an error of the scenario, world or model is its result."""
+        """Play a cell, and note its time and its warnings, which are not shown here."""
         started = time.perf_counter()
         # A process has only standard error for its warnings; the study gives them, each once.
         with warnings.catch_warnings(record=True) as found:
             warnings.simplefilter("always", ScenarioWarning)
-            content, unavailable = self._content(cell, terms)
+            content, unavailable = self.content(cell, terms)
         told = [each for each in found if isinstance(each.message, ScenarioWarning)]
         for each in found:
             if each not in told:
@@ -85,8 +85,11 @@ class Worker:
         ours = tuple(each.message for each in told if isinstance(each.message, ScenarioWarning))
         return CellResult(cell.key.name, content, seconds, unavailable, ours)
 
-    def _content(self, cell: Keyed, terms: Terms) -> tuple[dict[str, Any], str]:
-        """Return the content of a cell, and why no further cell can be played."""
+    def content(self, cell: Keyed, terms: Terms) -> tuple[dict[str, Any], str]:
+        """Play a cell; return its content, and why no further cell can be played.
+
+        An error of the scenario, world or model is its content.
+        """
         try:
             return cell.play(PlayStage(terms, self._worlds, self._renderer)), ""
         except self._caught as error:
