@@ -5,12 +5,16 @@ import sys
 import tomllib
 from pathlib import Path
 
+from tools.size import SIZES
+
 TOP = Path(__file__).parents[2]
 CONTRACTS = tomllib.loads((TOP / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
 (CONTRACT,) = (each for each in CONTRACTS if each["name"].startswith("What the paper describes"))
 CORE, AROUND = CONTRACT["source_modules"], CONTRACT["forbidden_modules"]
 APART = {"__main__", "errors", "files", "importing", "locking", "owned", "version", "worlds"}
 """Modules below all rooms, the one that starts the command line, and a room listed in parts."""
+MOST = 36_000
+"""Greatest number of lines of code of the core, as `tools/size.py` counts them."""
 PROGRAM = """
 import sys
 
@@ -58,3 +62,14 @@ def test_every_room_is_of_the_core_or_around_it():
     placed = {name.removeprefix("beliefnest.") for name in (*CORE, *AROUND)}
     parts = {"__init__", "__pycache__", "worlds.__init__", "worlds.__pycache__"}
     assert rooms - APART - parts == placed
+
+
+def test_the_core_stays_small():
+    files = [
+        file
+        for room in CORE
+        for place in [TOP.joinpath("src", *room.split("."))]
+        for file in ([place.with_suffix(".py")] if not place.is_dir() else place.rglob("*.*"))
+        if file.suffix in SIZES and "test" not in file.parts
+    ]
+    assert 0 < sum(SIZES[file.suffix](file) for file in files) <= MOST

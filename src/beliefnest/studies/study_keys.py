@@ -97,7 +97,7 @@ def _shortcuts(keys: StudyKeys) -> tuple[str, ...]:
     names = several("balance", keys.balance)
     for number, name in enumerate(names):
         if name not in FIXED_SOLVERS:
-            told = f"there is no shortcut {quoted(name)}{nearest_or_all(name, FIXED_SOLVERS)}"
+            told = f"there is no shortcut {quoted(name)}{nearest_or_all(name, list(FIXED_SOLVERS))}"
             raise StudyKeyError(("balance", number), told)
     if names and keys.design != "crossed":
         told = f"design {quoted(keys.design)} allocates conditions itself; leave one of them out"
