@@ -7,6 +7,7 @@ from beliefnest.belief.view import State
 from beliefnest.episodes.task import Task
 from beliefnest.facts.states import looking_at
 from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.over_time import TickWalk
 from beliefnest.scenarios.goals import Progress
 from beliefnest.world.paths import BeliefPath, path_text
 
@@ -22,6 +23,7 @@ class Watch:
     def __init__(self, task: Task, start: int) -> None:
         self._start = start
         self._seen = start - 1
+        self._walk = TickWalk()
         self._players = task.players
         goals = {"": task.goal, **{agent: task.goal_of(agent) for agent in task.agents}}
         # Equal goals have one progress: in most tasks, those of all agents.
@@ -42,7 +44,7 @@ class Watch:
             if self._seen < self._start:
                 self._feed(self._start, nest.at(self._start))
                 self._seen = self._start
-            for tick, states in nest.each_tick(self._paths, self._seen, nest.tick):
+            for tick, states in nest.each_tick(self._paths, self._seen, nest.tick, self._walk):
                 self._feed(tick, states)
             self._seen = nest.tick
         return self.progress

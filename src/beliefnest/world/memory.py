@@ -1,5 +1,6 @@
 """Greatest memory of this process, as the machine, its container or the shell limits it."""
 
+import functools
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +21,7 @@ class MemoryLimit(NamedTuple):
     source: str
 
 
+@functools.cache
 def memory_limit(root: Path = Path("/")) -> MemoryLimit | None:
     """Return the lowest limit of this process's memory; None: the system tells none.
 

@@ -20,7 +20,7 @@ from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import Past
 from beliefnest.nest.face.simulator import Simulator
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.past.over_time import each_tick
+from beliefnest.nest.past.over_time import TickWalk, each_tick
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.unique import unique_items
 from beliefnest.owned import is_own
@@ -301,7 +301,7 @@ class Nest(NestBase):
         self._recording.records.put_state(f"kept {name}", value)
 
     def each_tick(
-        self, paths: Sequence[str], after: int, until: int
+        self, paths: Sequence[str], after: int, until: int, walk: TickWalk | None = None
     ) -> Iterator[tuple[int, Mapping[str, State]]]:
         """Yield each tick of the real world's timeline with an entry, with several states.
 
@@ -311,11 +311,12 @@ class Nest(NestBase):
             paths: Belief paths of the simulators.
             after: Last tick to leave out.
             until: Last tick to yield.
+            walk: Place up to which the caller has read these simulators; None: none was read.
         """
         parsed = {path: parse_path(path, self.agents) for path in paths}
         with self._recording.turn:
             wanted = list(dict.fromkeys(parsed.values()))
-            for tick, states in each_tick(self._recording, wanted, after, until):
+            for tick, states in each_tick(self._recording, wanted, after, until, walk):
                 yield tick, {path: states[names] for path, names in parsed.items()}
 
     def play(self, on_progress: OnProgress | None = None) -> None:

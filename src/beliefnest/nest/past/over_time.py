@@ -3,8 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from beliefnest.belief.forest import Forest
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.timeline.store import Journal
@@ -68,8 +70,35 @@ def _check_first(state: State) -> None:
         )
 
 
+@dataclass(slots=True)
+class TickWalk:
+    """Place in a timeline up to which somebody has read the states of the same simulators.
+
+    Attributes:
+        key: The timeline; None: nothing was read.
+        generation: Counter of `StateHistory` that tells if the forest is still valid.
+        forest: Forest of the simulators there.
+    """
+
+    key: TimelineKey | None = None
+    generation: int = 0
+    forest: Forest | None = None
+
+    def begun(self, history: StateHistory, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
+        """Return the forest of a timeline: the one read last, else one at its beginning."""
+        if self.forest is None or (self.key, self.generation) != (key, history.generation):
+            self.forest = history.walk(key, paths)
+            # The walk may have found new claims, which make older forests invalid.
+            self.key, self.generation = key, history.generation
+        return self.forest
+
+
 def each_tick(
-    recording: Recording, paths: Sequence[BeliefPath], after: int, until: int
+    recording: Recording,
+    paths: Sequence[BeliefPath],
+    after: int,
+    until: int,
+    walk: TickWalk | None = None,
 ) -> Iterator[tuple[int, Mapping[BeliefPath, State]]]:
     """Yield each tick with an entry, with the states of several simulators below the real world.
 
@@ -78,12 +107,15 @@ def each_tick(
         paths: The simulators. Read their states before asking for the next tick.
         after: Last tick to leave out.
         until: Last tick to yield.
+        walk: Place up to which the caller has read these simulators already; None: from the
+            beginning.
     """
+    walk = walk or TickWalk()
     for stretch in recording.stretches(recording.moment(())):
         if stretch.tick <= after:
             continue
         key = stretch.timeline
-        forest = recording.history.walk(key, paths)
+        forest = walk.begun(recording.history, key, paths)
         first = recording.journal.entries_until(key, after)
         if first > forest.position:
             recording.history.advance(key, forest, first)
