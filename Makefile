@@ -1,5 +1,5 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[ci]"`.
-.PHONY: help test rest nightly check size format schema notices picture notebooks pages baselines docs links bench ci
+.PHONY: help test quick hook faults rest nightly check size format schema notices picture notebooks pages baselines docs links bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
@@ -8,6 +8,15 @@ NODE = $(shell python -c 'from beliefnest.worlds.minecraft.node_files import nod
 
 test: ## The tests of a day
 	pytest
+
+quick: ## The quick tests, in less than a minute
+	pytest -m quick
+
+hook: ## Let git run the quick checks and tests before each commit
+	git config core.hooksPath tools/hooks
+
+faults: ## Whether the tests of a day find the faults of tests/faults/table.toml; takes half an hour
+	python -m tests.faults
 
 rest: ## The tests that CI runs besides: see the marks in CONTRIBUTING.md
 	pytest -m ci

@@ -2,12 +2,14 @@
 
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 from tests.browsing import browser, chromium
 from tests.marks import add_ci, require_packages
 from tests.profiles import NIGHTLY
+from tests.quick import add_quick, is_left_out
 from tests.shared_worlds import kept_worlds, lent
 from tests.sharing import ByFile, rank
 from xdist.remote import Producer
@@ -43,12 +45,18 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFile 
     return ByFile(config, log) if config.getoption("dist") == "loadfile" else None
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Read only the files that have the tests asked for: reading all takes long."""
+    return True if is_left_out(collection_path, config) else None
+
+
 # First, so that `-m` finds the mark.
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with what takes longest, so that at the end no process waits for another."""
     for item in items:
         add_ci(item)
+        add_quick(item)
     items.sort(key=lambda item: rank(item.nodeid))
 
 
