@@ -251,7 +251,10 @@ def test_a_model_that_cannot_be_asked_is_no_result(here: Path, monkeypatch: Any)
         ("policies: [random, random]", "'random' is named twice"),
         ("policies: ['program:none.js']", "none.js cannot be read"),
         ("policies: [{ours: {ann: random}}, {ours: {bob: random}}]", "two of the policies have"),
-        ("policies: [{ours: {ann: {bob: random}}}]", "study.yaml:2: policies[0]: expected 'str'"),
+        (
+            "policies: [{ours: {ann: {bob: random}}}]",
+            "study.yaml:2: policies[0]: expected a text, or a mapping such as {name: text}",
+        ),
     ],
 )
 def test_a_wrong_study_is_told_in_one_line(
