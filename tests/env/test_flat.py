@@ -132,12 +132,15 @@ def test_only_agents_that_may_speak_have_claims() -> None:
         assert env.action_space("ann") == env.action_space("bob")
 
 
-def told_news(env: Any, agent: str, seen: Any) -> int:
-    """Return the number of a claim that the agent believes, and the other one does not."""
+def told_news(env: Any, agent: str, seen: Any, own: str = "") -> int:
+    """Return the number of a claim about contents that an agent believes, and the other not.
+
+    `own`: an item that the other one does not need.
+    """
     things = env.known(agent)
     for number, call in enumerate(env.calls(agent)):
-        if call is not None and call.skill == "say" and seen["action_mask"][number]:
-            told = call.args[1][0]
+        told = call.args[1][0] if call is not None and call.skill == "say" else {}
+        if told.get("item", own) != own and seen["action_mask"][number]:
             at = things.containers.index(tuple(told["place"])), things.items.index(told["item"])
             if seen["containers"][at] and not seen["beliefs_containers"][0][at]:
                 return number
@@ -154,6 +157,102 @@ def test_a_task_about_speech_is_won_with_claims_and_nested_beliefs_and_lost_with
                 is_told = is_told or number > 0
                 observations, *_, infos = env.step({"anne": number})
             assert infos["anne"]["success"] is speaks
+
+
+def test_what_is_needed_is_told_and_the_own_errand_done() -> None:
+    with closing(parallel_env("tell-what-is-needed", actions="flat", nested=["/nora/max"])) as env:
+        observations, _ = env.reset(seed=0)
+        books = [
+            place
+            for place, box in env.nest["/nora"].state.containers.items()
+            if "book" in box.items
+        ]
+        fetch = Call("getItemFromChest", (*books, {"book": 1}))
+        news = told_news(env, "nora", observations["nora"], "book")
+        for number in (news, number_of(env, "nora", fetch)):
+            env.step({"nora": number})
+        while env.agents:
+            *_, infos = env.step({"nora": 0})
+        assert infos["nora"]["success"]
+
+
+def builders_call(env: Any, agent: str, other: str, has_spoken: bool) -> Call:
+    """Return what a builder of *blueprint* does: describe what the other lacks, then build."""
+    mine, others = (env.nest[path].state for path in (f"/{agent}", f"/{agent}/{other}"))
+    pairs = [condition.fact.blocks for condition in env.view(agent).goal.conditions]
+    for place, model in pairs:
+        wanted, there = mine.blocks[model], mine.blocks[place]
+        if wanted is not None and others.blocks[model] is None and not has_spoken:
+            told = bn.Claim.block(model, wanted)
+            x, y, z = model
+            return Call("say", (f"block {wanted} {x} {y} {z}", [told.plain()]))
+    for place, model in pairs:
+        wanted, there = mine.blocks[model], mine.blocks[place]
+        if wanted in (None, there) or (place[0] < 13) is not (agent == "anne"):
+            continue
+        if there != "air":
+            return Call("mineBlock", (place, there))
+        if mine.agents[agent].inventory.get(wanted, 0):
+            return Call("placeItem", (wanted, place))
+        near = min(mine.containers, key=lambda at: abs(at[0] - place[0]))
+        return Call("getItemFromChest", (near, {wanted: 1}))
+    return Call("doNothing")
+
+
+def test_a_blueprint_is_built_by_number() -> None:
+    with closing(parallel_env("blueprint", actions="flat", nested=1)) as env:
+        env.reset(seed=0)
+        partner, first = {"anne": "bob", "bob": "anne"}, True
+        while env.agents:
+            chosen = {}
+            for agent, other in partner.items():
+                call = builders_call(env, agent, other, not first)
+                chosen[agent] = number_of(env, agent, call)
+                assert env.action_masks(agent)[chosen[agent]], call
+            first = False
+            *_, infos = env.step(chosen)
+        assert infos["anne"]["success"]
+
+
+def test_cells_are_gone_to_broken_filled_and_described_as_far_as_the_agent_knows() -> None:
+    wall, free, hidden = (5, 1, 1), (4, 1, 4), (8, 1, 3)
+    cells, held = [hidden, wall, free], {"bread": 1, "oak_planks": 1}
+    scene = {
+        **ROOM,
+        "agents": {**ROOM["agents"], "ann": {"position": [1.5, 1, 1.5], "inventory": held}},
+    }
+    scenario = bn.Scenario.from_mapping(scene)
+    with closing(
+        parallel_env(scenario, actions="flat", cells=cells, agents=["ann"], senses="percepts")
+    ) as env:
+        observations, _ = env.reset(seed=0)
+        calls, mask = env.calls("ann"), observations["ann"]["action_mask"]
+        for call, can_begin in (
+            (Call("mineBlock", (wall, "bricks")), True),
+            (Call("mineBlock", (free, "air")), False),
+            (Call("placeItem", ("oak_planks", free)), True),
+            (Call("placeItem", ("oak_planks", wall)), False),
+            (Call("placeItem", ("bread", free)), False),
+            (Call("placeItem", ("oak_planks", hidden)), False),
+            (Call("goToPosition", (free, 0)), True),
+            (Call("goToPosition", (hidden, 0)), False),
+        ):
+            assert bool(mask[calls.index(call)]) is can_begin, call
+        told = [call.args[1][0] for call in calls if call and call.skill == "say"]
+        assert {tuple(each["place"]) for each in told if each["kind"] == "block"} == {wall, free}
+        # The number of what is behind the wall stands for nothing: she does not know what is there.
+        assert not any(call and call.skill == "mineBlock" and hidden in call.args for call in calls)
+        observations, *_, infos = env.step(
+            {"ann": calls.index(Call("placeItem", ("oak_planks", free)))}
+        )
+        assert infos["ann"]["error"] == ""
+        assert env.nest["/"].state.blocks[free] == "oak_planks"
+
+
+@pytest.mark.parametrize("cells", [[(1, 2)], [(1, 2, 0.5)], ["abc"], [3], [(99, 0, 0)]])
+def test_cells_that_are_none_are_refused(cells: Any) -> None:
+    with pytest.raises(bn.InputError, match="cells has"):
+        room(cells=cells)
 
 
 def test_the_conformance_tests_of_the_library_pass_with_masks() -> None:

@@ -6,18 +6,21 @@ from tests.noninterference.doors import door
 from tests.noninterference.environment_doors import _BOUNDS
 from tests.noninterference.pairs import AGENTS, Played
 
-from beliefnest.env.actions import Calls
+from beliefnest.env.actions import Calls, NotKnownError
 from beliefnest.env.flat import ActorMind, FlatActions
 from beliefnest.env.order import KINDS, KnownOrder
 from beliefnest.env.rendering import line, picture
+from beliefnest.skills.calls import Call
 from beliefnest.world.paths import parse_path, path_text, paths_below
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.footpaths import InReach, Near
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.hand import REACH
 
-_BOUNDS_OF_FLAT = replace(_BOUNDS, most={**dict.fromkeys(KINDS, 8), "places": 0})
+_BOUNDS_OF_FLAT = replace(_BOUNDS, most={**dict.fromkeys(KINDS, 8), "places": 0, "cells": 3})
 _FLAT = FlatActions(Calls(_BOUNDS_OF_FLAT, {"hello": ()}), _BOUNDS_OF_FLAT.most, speaks=True)
+_CELLS = ((2, 1, 1), (6, 1, 3), (10, 1, 3))
+"""Cells in the western room, in the wall, and in the eastern room."""
 _GROUNDS = Grounds()
 
 
@@ -48,8 +51,16 @@ def masks(world: Played, path: str) -> object:
         goal = InReach(place, REACH) if near is None else Near(place, near)
         return feet is not None and ground.may_lead(ground.cell_of(feet), goal)
 
-    mind = ActorMind(state.path[-1], state, order.things, (), True, may_reach)
-    return _FLAT.mask(mind).tolist(), order.things
+    mind = ActorMind(state.path[-1], state, order.things, (), _CELLS, True, may_reach)
+    calls = [_call(number, mind) for number in range(len(_FLAT.offers))]
+    return _FLAT.mask(mind).tolist(), calls, order.things
+
+
+def _call(number: int, mind: ActorMind) -> Call | None:
+    try:
+        return _FLAT.call(number, mind)
+    except NotKnownError:
+        return None
 
 
 @door(every=12)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # Imported when an environment is made.
     from beliefnest.nest.face.nest import Nest
     from beliefnest.scenarios.scenario import Scenario
     from beliefnest.timeline.run_records import Senses
+    from beliefnest.world.values import Position
 
 __all__ = ["aec_env", "parallel_env", "sb3_env", "vector_env"]
 
@@ -34,6 +35,7 @@ def parallel_env(
     nested: int | Sequence[str] = (),
     phrases: "Phrases | Sequence[str]" = (),
     items: Sequence[str] = (),
+    cells: "Sequence[Position]" = (),
     sizes: "Mapping[str, int] | None" = None,
     reward: "Callable[[Nest, str], float] | None" = None,
     ends: "Callable[[Nest], bool] | None" = None,
@@ -68,6 +70,8 @@ def parallel_env(
         phrases: Utterances to choose from; a mapping gives the claims of each.
         items: Names of items that may appear later but that no agent or container has at the
             start.
+        cells: Cells that `flat` actions can be about: to go and stand there, to break or place a
+            block, to say what is there. Those of blocks and places in goals are among them anyway.
         sizes: Greatest numbers of things of a kind (`agents`, `items`, `containers`, `doors`,
             `levers`, `buttons`, `signs`), by kind; others are those of the first instances.
         reward: Function of the nest and an agent that returns its reward after a step; None for
@@ -105,6 +109,7 @@ def parallel_env(
         nested=nested if isinstance(nested, int) else tuple(nested),
         phrases=phrases,
         items=tuple(items),
+        cells=tuple(cells),
         sizes=dict(sizes or {}),
         reward=reward,
         ends=ends,

@@ -14,8 +14,8 @@ from beliefnest.belief.plain import belief_json
 from beliefnest.belief.view import State
 from beliefnest.env.acting import Acting, ActionState, ProgramActing, SkillActing
 from beliefnest.env.actions import MOST_ITEMS, Calls, NamedAction, NotKnownError
-from beliefnest.env.bounds import ArrayShape, Phrases, SpaceBounds, ThingsLayout
-from beliefnest.env.flat import ActorMind, FlatActions
+from beliefnest.env.bounds import ArrayShape, Phrases, SpaceBounds
+from beliefnest.env.flat import ActorMind, FlatActions, checked_cells
 from beliefnest.env.layout import layout_of
 from beliefnest.env.order import KnownOrder, Things
 from beliefnest.env.playing import Instances, TaskActing
@@ -23,7 +23,7 @@ from beliefnest.env.rendering import line, picture
 from beliefnest.env.room import check_arrays, check_nested
 from beliefnest.env.saving import Choice, SavedEpisode, check_no_options
 from beliefnest.episodes.agent_view import AgentView, Brief
-from beliefnest.episodes.policies.candidates import items_of
+from beliefnest.episodes.policies.candidates import cells_of, items_of
 from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError, PathError, UnknownNameError
 from beliefnest.nest.face.nest import Nest
@@ -51,7 +51,7 @@ _LONGEST_PROGRAM = 10_000
 _OF_WORLD = frozenset(
     (
         *("_own", "_worlds", "_nest", "_acting", "_grounds"),
-        *("_played", "_by_hand", "_left", "_heard", "_orders"),
+        *("_played", "_by_hand", "_left", "_heard", "_orders", "_cells"),
     )
 )
 """Attributes of an environment that belong to its open world."""
@@ -72,6 +72,7 @@ class EnvironmentOptions:
     nested: int | tuple[str, ...] = ()
     phrases: Phrases | Sequence[str] = ()
     items: tuple[str, ...] = ()
+    cells: tuple[Position, ...] = ()
     sizes: Mapping[str, int] = field(default_factory=dict)
     reward: Callable[[Nest, str], float] | None = None
     ends: Callable[[Nest], bool] | None = None
@@ -195,7 +196,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             scenario = source
         self._named = scenario.name
         self._arrange(scenario)
-        layouts = [self.layout, *self._further_layouts()]
+        tried = [] if isinstance(source, Scenario) else [source.of(seed) for seed in range(_TRIED)]
+        said, items = options.said, options.items
+        others = [layout_of(each.scenario.setting, said, items) for each in tried]
+        layouts = [self.layout, *others]
+        self._given = checked_cells(options.cells, self.layout.box)
         self._bounds = SpaceBounds.of(layouts, options.sizes)
         self._bounds.check(self.layout)
         self._calls = Calls(self._bounds, options.said)
@@ -209,7 +214,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if isinstance(options.nested, int):
             check_nested(context, self.possible_agents, options.nested)
         speaks = any(map(self._may_speak, self.possible_agents))
-        self._flat = FlatActions(self._calls, self._bounds.most, speaks=speaks)
+        cells = (
+            self._cells_of(each, a) for each in (self._task, *tried) for a in self.possible_agents
+        )
+        most = {**self._bounds.most, "cells": max(map(len, cells))}
+        self._flat = FlatActions(self._calls, most, speaks=speaks)
         self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
         self._nested_of = {
             agent: tuple(path for path in self._nested if path[0] == agent)
@@ -238,6 +247,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._left: TimelineInfo | None = None
         self._heard: dict[str, int] = {}
         self._orders: dict[str, KnownOrder] = {}
+        self._cells: dict[str, tuple[Position, ...]] = {}
         self._grounds = Grounds()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -256,13 +266,13 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """Set what there is in an instance."""
         self.layout = layout_of(scenario.setting, self._options.said, self._options.items)
 
-    def _further_layouts(self) -> Sequence[ThingsLayout]:
-        """Return the layouts of a few other instances, the same ones for each seed."""
-        source, chosen = self._source, self._options
-        if not isinstance(source, Instances):
-            return ()
-        tasks = (source.of(seed) for seed in range(_TRIED))
-        return [layout_of(each.scenario.setting, chosen.said, chosen.items) for each in tasks]
+    def _cells_of(self, task: Task | None, agent: str) -> tuple[Position, ...]:
+        """Return the cells that an agent knows by the rules: those given, and those of goals."""
+        of_goals: set[Position] = set()
+        if task is not None:
+            brief = Brief.of(task, self._options.seed, agent)
+            of_goals = cells_of(brief.considered, brief.agents)
+        return tuple(sorted({*self._given, *of_goals}))
 
     def known(self, agent: str) -> Things:
         """Return the things that an agent has come to know in this episode, in its order.
@@ -411,6 +421,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._orders = {
             agent: KnownOrder(Things(items=tuple(self._declared(agent)))) for agent in self.agents
         }
+        self._cells = {agent: self._cells_of(self._task, agent) for agent in self.agents}
         told = self._told({agent: ActionState() for agent in self.agents}, spoken=True)
         self._left = self._reality()
         if self.render_mode == "human":
@@ -456,7 +467,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             return feet is not None and ground.may_lead(ground.cell_of(feet), goal)
 
         speaks = self._may_speak(agent)
-        return ActorMind(agent, state, things, self.layout.places, speaks, may_reach)
+        places, cells = self.layout.places, self._cells[agent]
+        return ActorMind(agent, state, things, places, cells, speaks, may_reach)
 
     def _may_speak(self, agent: str) -> bool:
         return self._task is None or agent in self._task.form.talk

@@ -4,6 +4,7 @@ A number always stands for the same skill with the same numbers of things. Which
 is computed from the belief of their agent alone.
 """
 
+import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -25,10 +26,11 @@ from beliefnest.episodes.policies.candidates import said
 from beliefnest.errors import InputError
 from beliefnest.skills.calls import Call
 from beliefnest.world.claims import Claim
-from beliefnest.world.values import Position, block_at
+from beliefnest.world.registry import Registry, block_name
+from beliefnest.world.values import Box, Position, block_at
 
 _NEAR = 2
-_GOALS = ("agent", "container", "door", "lever", "button", "sign", "place")
+_GOALS = ("agent", "container", "door", "lever", "button", "sign", "place", "cell")
 """Parts that name somewhere to go."""
 
 
@@ -54,6 +56,7 @@ class ActorMind:
         state: Its belief.
         things: The things that it knows, in its order.
         places: Named places, which everybody knows.
+        cells: Cells that the rules name to the agent: those of goals, and others of the user.
         may_speak: True if others can hear what it says.
         may_reach: Function of a place, and of a distance at which to stand or None for where a
             hand reaches the place; it returns False if the agent knows that there is no way.
@@ -63,6 +66,7 @@ class ActorMind:
     state: State
     things: Things
     places: Sequence[Position]
+    cells: Sequence[Position]
     may_speak: bool
     may_reach: Callable[[Position, float | None], bool]
 
@@ -72,7 +76,7 @@ class FlatActions:
 
     Args:
         calls: Conversion of names to calls.
-        most: Greatest numbers of things by kind, `places` among them.
+        most: Greatest numbers of things by kind, `places` and `cells` among them.
         speaks: True if any agent may speak.
 
     Attributes:
@@ -100,11 +104,15 @@ class FlatActions:
         named = self._named(offer, mind)
         match offer.skill, named:
             case "goToPosition", _:
-                return Call("goToPosition", (_goal(named, mind), 0 if "place" in named else _NEAR))
-            case "say", {"item": item, "container": place}:
-                return said(Claim.located(item, place))
-            case "whisper", {"agent": hearer, "item": item, "container": place}:
-                return Call("whisper", (hearer, *said(Claim.located(item, place)).args))
+                return Call("goToPosition", (_goal(named, mind), _distance(named)))
+            case "mineBlock", {"cell": cell}:
+                return Call("mineBlock", (cell, block_name(_block(cell, mind))))
+            case "placeItem", {"item": item, "cell": cell}:
+                return Call("placeItem", (item, cell))
+            case "say" | "whisper", {"container": _} | {"cell": _}:
+                told = said(_claim(named, mind)).args
+                hearer = [named["agent"]] if "agent" in named else []
+                return Call(offer.skill, (*hearer, *told))
         return self._calls.action(mind.things, offer.skill, named).call
 
     def mask(self, mind: ActorMind) -> npt.NDArray[np.int8]:
@@ -115,6 +123,8 @@ class FlatActions:
         try:
             named = self._named(offer, mind)
             goal = _goal(named, mind) if offer.skill not in SPEECH and named else None
+            if offer.skill in SPEECH and "cell" in named:
+                _block(named["cell"], mind)
         except NotKnownError:
             return False
         if named.get("agent") == mind.agent or _lacks(offer.skill, named, mind.state):
@@ -122,18 +132,34 @@ class FlatActions:
         if goal is None:
             return mind.may_speak or offer.skill not in SPEECH
         is_walk = offer.skill in ("goToPosition", "giveItemToOther")
-        near = 0 if "place" in named else _NEAR
-        return _is_there(named, mind) and mind.may_reach(goal, near if is_walk else None)
+        return _is_there(named, mind) and mind.may_reach(
+            goal, _distance(named) if is_walk else None
+        )
 
     def _named(self, offer: Offer, mind: ActorMind) -> Mapping[str, Any]:
         """Return the things that an action is about, by part."""
         found = {}
         for part, number in offer.parts:
-            known = mind.places if part == "place" else self._calls.known(mind.things, part)
+            own = {"place": mind.places, "cell": mind.cells}
+            known = own[part] if part in own else self._calls.known(mind.things, part)
             if number >= len(known):
                 raise NotKnownError(f"it knows no {part} {number} so far")
             found[part] = known[number]
         return found
+
+
+def checked_cells(cells: Sequence[Any], box: Box) -> tuple[Position, ...]:
+    """Return cells that a user has named; raise InputError if one is no cell of a box."""
+    found = []
+    for cell in cells:
+        try:
+            x, y, z = map(operator.index, cell)
+        except (TypeError, ValueError):
+            raise InputError(f"cells has {cell!r:.100}; give three whole numbers each") from None
+        if (x, y, z) not in box:
+            raise InputError(f"cells has {(x, y, z)}, outside the box {box.low}..{box.high}")
+        found.append((x, y, z))
+    return tuple(found)
 
 
 def _offers(calls: Calls, most: Mapping[str, int], *, speaks: bool) -> Iterator[Offer]:
@@ -141,13 +167,16 @@ def _offers(calls: Calls, most: Mapping[str, int], *, speaks: bool) -> Iterator[
         parts = [part for part in skill.parts if part != "count"]
         if parts == ["position"]:
             for part in _GOALS:
-                yield from _each(skill.name, {part: most[KIND_OF_PART.get(part, "places")]})
+                yield from _each(skill.name, {part: most[KIND_OF_PART.get(part, f"{part}s")]})
         elif speaks or skill.name not in SPEECH:
             yield from _each(skill.name, {part: calls.parts[part] for part in parts})
+    yield from _each("mineBlock", {"cell": most["cells"]})
+    yield from _each("placeItem", {"item": most["items"], "cell": most["cells"]})
     if speaks:
-        about = {"item": most["items"], "container": most["containers"]}
-        yield from _each("say", about)
-        yield from _each("whisper", {"agent": most["agents"], **about})
+        contents = {"item": most["items"], "container": most["containers"]}
+        for about in (contents, {"cell": most["cells"]}):
+            yield from _each("say", about)
+            yield from _each("whisper", {"agent": most["agents"], **about})
 
 
 def _each(skill: str, sizes: Mapping[str, int]) -> Iterator[Offer]:
@@ -170,15 +199,45 @@ def _goal(named: Mapping[str, Any], mind: ActorMind) -> Position:
     return block_at(position)
 
 
+def _distance(named: Mapping[str, Any]) -> int:
+    """Return how far from its goal an agent may stand; what is there may be solid."""
+    return 0 if named.keys() & {"place", "cell"} else _NEAR
+
+
+def _block(cell: Position, mind: ActorMind) -> str:
+    """Return what an agent believes to be in a cell.
+
+    Raises:
+        NotKnownError: It does not know.
+    """
+    there: str | None = mind.state.blocks[cell]
+    if there is None:
+        raise NotKnownError(f"it does not know what is at {cell}")
+    return there
+
+
+def _claim(named: Mapping[str, Any], mind: ActorMind) -> Claim:
+    """Return a claim about a container, or, as its speaker believes, about a cell."""
+    if "cell" in named:
+        return Claim.block(named["cell"], _block(named["cell"], mind))
+    return Claim.located(named["item"], named["container"])
+
+
 def _lacks(skill: str, named: Mapping[str, Any], state: State) -> bool:
     """Return True if the holder of a belief knows that what an action needs is not there."""
     item, me = str(named.get("item")), state.agents[state.path[-1]]
+    there = state.blocks[named["cell"]] if "cell" in named else None
     match skill:
         case "getItemFromChest":
             known = state.containers.get(named["container"])
             return known is not None and known.complete and not known.items.get(item, 0)
         case "depositItemIntoChest":
             return not me.inventory.get(item, 0)
+        case "mineBlock":
+            return there is None or block_name(there) == "air"
+        case "placeItem":
+            is_taken = there is not None and Registry.load().is_solid(block_name(there))
+            return is_taken or not me.inventory.get(item, 0) or not Registry.load().has_block(item)
         case "giveItemToOther":
             return not me.inventory.get(item, 0) or not state.agents[named["agent"]].current
     return False

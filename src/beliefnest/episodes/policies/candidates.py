@@ -22,6 +22,12 @@ def items_of(goals: Sequence[Goal]) -> list[str]:
     return sorted({item for fact in _facts(goals) for item in fact.items})
 
 
+def cells_of(goals: Sequence[Goal], agents: Sequence[str]) -> set[Position]:
+    """Return the cells of blocks in goals, and those in which agents are to stand."""
+    sought = [fact.pursuit(name, {}) for fact in _facts(goals) for name in agents]
+    return {*_block_places(goals), *(cell for each in sought for cell in each.at)}
+
+
 def _facts(goals: Sequence[Goal]) -> Iterator[Fact]:
     return (condition.fact for goal in goals for condition in goal.conditions)
 
