@@ -173,7 +173,7 @@ def test_a_hole_that_names_no_parameter_is_told_with_the_error_of_the_program() 
         "box": [[0, 0, 0], [4, 3, 4]],
         "parameters": {"item": {"default": "apple"}},
         "agents": {"ann": {"position": [2.5, 1, 2.5], "inventory": {"apple": 1}}},
-        "script": [{"agent": "ann", "program": "await doNothing(bot, {${itm}: 1});"}],
+        "script": [{"agent": "ann", "program": "await say(bot, `${itm}`, {);"}],
     }
     with (
         bn.Nest.open(bn.Scenario.from_mapping(content), "scripted") as nest,
