@@ -203,3 +203,40 @@ def test_a_deadline_of_the_task_terminates_and_a_limit_of_rounds_truncates() -> 
                 _, _, ended, cut, infos = env.step({})
             assert (ended["ann"], cut["ann"], infos["ann"]["success"]) == (*ends, False)
             assert env.nest.tick == 6
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"nested": -1}, "nested is -1; give paths, or a depth from 0 on"),
+        ({"nested": True}, "nested is True; give paths"),
+        ({"phrases": [3]}, r"phrases is \[3\]; give a list of texts"),
+        ({"phrases": "yes"}, "phrases is 'yes'; give a list of texts"),
+        ({"items": [3]}, r"items is \(3,\); give a list of texts"),
+        ({"seed": -1}, "seed is -1; environments take whole numbers from 0 on"),
+    ],
+)
+def test_options_of_wrong_kinds_are_refused_in_one_line(options: Any, message: str) -> None:
+    with pytest.raises(bn.InputError, match=message):
+        parallel_env("sally-anne", **options)
+
+
+def test_functions_of_the_user_return_numbers_and_truths() -> None:
+    for options, message in (
+        (
+            {"reward": lambda nest, agent: "much"},
+            "reward returned 'much' for anne; return a number",
+        ),
+        ({"reward": lambda nest, agent: None}, "reward returned None for anne; return a number"),
+        ({"ends": lambda nest: None}, "ends returned None; return True or False"),
+        ({"ends": lambda nest: "no"}, "ends returned 'no'; return True or False"),
+    ):
+        with closing(parallel_env("sally-anne", **options)) as env:
+            env.reset(seed=0)
+            with pytest.raises(bn.InputError, match=message):
+                env.step({})
+    with closing(parallel_env("sally-anne", reward=lambda *_: np.float32(2))) as env:
+        with pytest.raises(bn.InputError, match="seed is -1"):
+            env.reset(seed=-1)
+        env.reset(seed=0)
+        assert env.step({})[1]["anne"] == 2.0

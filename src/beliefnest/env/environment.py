@@ -97,7 +97,12 @@ class EnvironmentOptions:
             raise InputError(
                 f"render_mode is {self.render_mode!r}; it is {' or '.join(_RENDER_MODES)}, or None"
             )
-        checked_seed(self.seed)
+        _seed(self.seed)
+        if isinstance(self.nested, int) and (isinstance(self.nested, bool) or self.nested < 0):
+            raise InputError(f"nested is {self.nested!r}; give paths, or a depth from 0 on")
+        for name, texts in (("phrases", self.phrases), ("items", self.items)):
+            if isinstance(texts, str) or not all(isinstance(each, str) for each in texts):
+                raise InputError(f"{name} is {texts!r:.100}; give a list of texts")
         counts = ("max_steps", "step_ticks", "timeout_ticks")
         for name in counts:
             number = getattr(self, name)
@@ -410,7 +415,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if self._worlds is not None:
             self._own.check_own("the environment")
         check_no_options(options)
-        self._seed = self._seed + 1 if seed is None else checked_seed(seed)
+        self._seed = self._seed + 1 if seed is None else _seed(seed)
         self._end_episode()
         if self._worlds is None:
             self._worlds = Worlds(0)
@@ -619,13 +624,13 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
     def _reward(self, agent: str) -> float:
         reward = self._options.reward
         if reward is not None:
-            return float(reward(self.nest, agent))
+            return _number(reward(self.nest, agent), agent)
         return self._acting.reward(agent) if isinstance(self._acting, TaskActing) else 0.0
 
     def _ends(self) -> tuple[bool, bool]:
         """Return True if the episode has ended, and True if it was cut."""
         ends = self._options.ends
-        ended = ends is not None and bool(ends(self.nest))
+        ended = ends is not None and _truth(ends(self.nest))
         if isinstance(self._acting, TaskActing):
             is_cut = self._acting.is_cut
             return ended or (self._acting.is_over and not is_cut), is_cut
@@ -733,6 +738,31 @@ def _space_of(shapes: Mapping[str, ArrayShape]) -> spaces.Dict:
             for name, (shape, dtype, low, high) in shapes.items()
         }
     )
+
+
+def _seed(seed: object) -> int:
+    """Return a seed as Gymnasium has them; raise InputError for others."""
+    number = checked_seed(seed)
+    if number < 0:
+        raise InputError(f"seed is {number}; environments take whole numbers from 0 on")
+    return number
+
+
+def _number(earned: Any, agent: str) -> float:
+    """Return what a function of the user gives as a reward; raise InputError for no number."""
+    try:
+        if not isinstance(earned, str | bytes):
+            return float(earned)
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"reward returned {earned!r:.100} for {agent}; return a number")
+
+
+def _truth(ended: Any) -> bool:
+    """Return what a function of the user says of the end; raise InputError for no truth."""
+    if not isinstance(ended, bool | np.bool_ | int):
+        raise InputError(f"ends returned {ended!r:.100}; return True or False")
+    return bool(ended)
 
 
 def _nested(
