@@ -51,12 +51,13 @@ def plain_frame(columns: Mapping[str, Typed]) -> "pandas.DataFrame":
     Raises:
         MissingExtraError: pandas is not installed.
     """
-    pandas = _pandas()
+    library = _pandas()
     series = {name: _plain(column) for name, column in columns.items()}
-    return pandas.DataFrame(
-        {name: pandas.Series(values, dtype=kind) for name, (values, kind) in series.items()},
+    frame: pandas.DataFrame = library.DataFrame(
+        {name: library.Series(values, dtype=kind) for name, (values, kind) in series.items()},
         columns=list(columns),
     )
+    return frame
 
 
 def _plain(column: Typed) -> tuple[Sequence[Any], str]:
