@@ -197,3 +197,15 @@ def test_a_mask_resets_the_copies_that_it_names() -> None:
         ):
             with pytest.raises(bn.InputError, match=message):
                 env.reset(options={"reset_mask": mask})
+
+
+@pytest.mark.parametrize("policy", ["random", "search:0"])
+def test_agents_of_the_environment_decide_alike_after_a_restore(policy: str) -> None:
+    scene = {**HALL, "episode": {**EPISODE, "players": ["ann"], "policies": {"bob": policy}}}
+    with closing(parallel_env(bn.Scenario.from_mapping(scene), nested=2)) as env:
+        env.reset(seed=4)
+        env.step({})
+        saved = env.save()
+        told = [env.step({}) for _ in range(3)]
+        env.restore(saved)
+        assert written([env.step({}) for _ in range(3)]) == written(told)
