@@ -53,8 +53,21 @@ _STRONG_SIGNS = ("wait", "no", "correction", "scratch", "i mean", "sorry", "or r
                  "i change", "edit", "hold on")  # fmt: skip
 
 
+class ReadingOutcome:
+    """Outcome of a reading of any kind."""
+
+    __slots__ = ()
+    outcome: ReadOutcome
+    refused: bool
+
+    @property
+    def row_outcome(self) -> str:
+        """Outcome in rows: `outcome`, or `refused`."""
+        return "refused" if self.refused else self.outcome
+
+
 @dataclass(frozen=True, slots=True)
-class AnswerReading:
+class AnswerReading(ReadingOutcome):
     """Result of reading an answer.
 
     Attributes:
@@ -72,11 +85,6 @@ class AnswerReading:
     thinking: str = ""
     said: str = ""
     refused: bool = False
-
-    @property
-    def row_outcome(self) -> str:
-        """Outcome in rows: `outcome`, or `refused`."""
-        return "refused" if self.refused else self.outcome
 
 
 def is_refusal(text: str) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from beliefnest.llm.messages import Finish
-from beliefnest.llm.reading_answers import ReadOutcome, is_refusal, withheld
+from beliefnest.llm.reading_answers import ReadingOutcome, ReadOutcome, is_refusal, withheld
 from beliefnest.llm.statements import unfenced
 from beliefnest.llm.thinking import separate_thinking
 
@@ -17,7 +17,7 @@ _SEVERAL = re.compile(r"\s*(?:-|\u2013|\u2014|\bto\b|\bor\b|\band\b)\s*[-+]?\d",
 
 
 @dataclass(frozen=True, slots=True)
-class NumbersReading:
+class NumbersReading(ReadingOutcome):
     """Result of reading numbers.
 
     Attributes:
@@ -35,11 +35,6 @@ class NumbersReading:
     reason: str = ""
     thinking: str = ""
     refused: bool = False
-
-    @property
-    def row_outcome(self) -> str:
-        """Outcome in rows: `outcome`, or `refused`."""
-        return "refused" if self.refused else self.outcome
 
 
 def read_numbers(

@@ -5,11 +5,11 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Finish
-from beliefnest.llm.reading_answers import is_refusal, withheld
+from beliefnest.llm.reading_answers import ReadingOutcome, ReadOutcome, is_refusal, withheld
 from beliefnest.llm.thinking import separate_thinking
 
 if TYPE_CHECKING:  # tree-sitter is imported only when an answer is read.
@@ -54,7 +54,7 @@ _TASK_LINES = re.compile(
 
 
 @dataclass(frozen=True, slots=True)
-class ProgramReading:
+class ProgramReading(ReadingOutcome):
     """Result of reading a program.
 
     Attributes:
@@ -66,15 +66,10 @@ class ProgramReading:
     """
 
     program: str | None
-    outcome: Literal["read", "ambiguous", "unread", "cut"]
+    outcome: ReadOutcome
     reason: str = ""
     thinking: str = ""
     refused: bool = False
-
-    @property
-    def row_outcome(self) -> str:
-        """Outcome in rows: `outcome`, or `refused`."""
-        return "refused" if self.refused else self.outcome
 
 
 @dataclass(frozen=True, slots=True)
