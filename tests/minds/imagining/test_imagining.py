@@ -72,6 +72,19 @@ def test_an_absent_item_tells_who_took_it():
             assert imagined.log_evidence == pytest.approx(math.log(0.5))
 
 
+def test_simulators_of_a_history_lead_to_other_ticks_and_beliefs():
+    with kitchen() as nest:
+        since = look_into_chest(nest, is_taken=True)
+        history = nest["/anne"].imagine(since, actors={"bob": {"fetch": TAKE}}, n=1)[0]
+        believed = history.at(since)["/bob"]
+        assert believed.path == history["/bob"].at(since).path == "/anne/bob"
+        assert believed.state.containers == history["/bob"].at(since).state.containers
+        assert believed.state.containers != history["/bob"].state.containers
+        for simulator in (history, history["/bob"]):
+            with pytest.raises(TickError, match="in the future"):
+                simulator.at(history.tick + 1)
+
+
 def test_without_evidence_shares_are_the_weights():
     with kitchen() as nest:
         nest.scripted_world.step(20)

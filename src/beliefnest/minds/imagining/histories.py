@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.belief.view import State
@@ -14,6 +13,7 @@ from beliefnest.minds.imagining.history_starts import HistoryStarts
 from beliefnest.minds.imagining.imagine_arguments import Evidence, goal_conditions
 from beliefnest.minds.imagining.particles import HistoryDraws, Lost, Particle
 from beliefnest.nest.face.given import check_branch_name, tick_of, whole
+from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.summed_state import StateSums
 from beliefnest.nest.past.timeline_state import TimelineState
@@ -32,17 +32,22 @@ if TYPE_CHECKING:  # These take long to import, and few histories are drawn or l
     from beliefnest.pictures.figure import Figure
 
 
-@dataclass(frozen=True, slots=True)
-class Faces:
-    """Functions that make the simulators in which users see histories.
+class HistorySimulator(PastSimulator):
+    """Read-only simulator in a history; belief paths start at its own path."""
 
-    Attributes:
-        past: Function that makes the read-only simulator of a path at a tick.
-        live: Function that makes a simulator that can act, on the timelines of a history.
-    """
+    def at(self, tick: int) -> "HistorySimulator":
+        """Return the simulator at another tick.
 
-    past: Callable[[Recording, BeliefPath, int | None], Any]
-    live: Callable[[Recording], Any]
+        Raises:
+            TickError: The tick is after the end of the history, or before the start of the run.
+        """
+        then = self._recording.moment(self._path, tick_of(tick)).tick
+        return HistorySimulator(self._recording, self._path, then)
+
+    def __getitem__(self, path: str) -> "HistorySimulator":
+        """Return a belief in it at the same tick; `/` is itself."""
+        within = normalised((*self._path, *parse_path(path, self._recording.agents)))
+        return HistorySimulator(self._recording, within, self._tick)
 
 
 class History(Barred):
@@ -88,20 +93,15 @@ class History(Barred):
     @property
     def state(self) -> State:
         """The state of the history's world at its end."""
-        state: State = self["/"].state
-        return state
+        return self["/"].state
 
-    def at(self, tick: int) -> Any:
-        """Return the history's world at a tick.
+    def at(self, tick: int) -> HistorySimulator:
+        """Return the history's world at a tick; `at(tick)["/bob"]` is a belief in it.
 
         Raises:
             TickError: The tick is after the end of the history, or before the start of the run.
         """
-        imagined, then = self._imagined, tick_of(tick)
-        recording = imagined._recorded(self._course)
-        if not imagined.since <= then <= self.tick:
-            recording.moment(imagined._path, then)
-        return imagined._faces.past(recording, imagined._path, then)
+        return self["/"].at(tick)
 
     def feet(self, agent: str) -> dict[int, Point]:
         """Return the feet of an agent at every tick from `since` at which the history has it.
@@ -131,16 +131,15 @@ class History(Barred):
                 found[tick] = feet
         return found
 
-    def __getitem__(self, path: str) -> Any:
+    def __getitem__(self, path: str) -> HistorySimulator:
         """Return a simulator at the end of the history; `/` is the history's world."""
-        recording = self._imagined._recorded(self._course)
-        whole_path = self._imagined._within(path)
-        return self._imagined._faces.past(recording, whole_path, self._course.tick)
+        imagined = self._imagined
+        recording = imagined._recorded(self._course)
+        return HistorySimulator(recording, imagined._path, self.tick)[path]
 
     def figure(self, against: str | None = None) -> "Figure":
         """Draw the end of the history; mark differences from a belief of the nest, if given."""
-        figure: Figure = self["/"].figure(against)
-        return figure
+        return self["/"].figure(against)
 
     def fork(self, name: str = "fork") -> Any:
         """Return a simulator that continues the history on a branch, in a scripted world.
@@ -156,7 +155,7 @@ class History(Barred):
         """
         recording = self._imagined._recorded(self._course)
         own = recording.on(recording.selected[self._imagined._path])
-        simulator = self._imagined._faces.live(own)
+        simulator = self._imagined._live(own)
         simulator.switch(name)
         return simulator
 
@@ -194,10 +193,10 @@ class Imagined(Barred):
         starts: HistoryStarts,
         until: int,
         side: Recording,
-        faces: Faces,
+        live: Callable[[Recording], Any],
     ) -> None:
         self._recording, self._path, self._base = recording, path, base
-        self._starts, self._side, self._faces = starts, side, faces
+        self._starts, self._side, self._live = starts, side, live
         self._drawing = drawing
         self.since, self.until, self.n = base.tick, until, len(drawing.drawn)
         self.impossible: Lost | None = drawing.lost
@@ -338,9 +337,6 @@ class Imagined(Barred):
         return f"{head}, effective size {self.effective_size:.3g}: {', '.join(shares)}>"
 
     # Histories as branches
-
-    def _within(self, path: str) -> BeliefPath:
-        return normalised((*self._path, *parse_path(path, self._recording.agents)))
 
     def _recorded(self, course: Course) -> Recording:
         """Return timelines with the course on one of its own, beside those of the nest."""

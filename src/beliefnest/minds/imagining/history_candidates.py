@@ -3,15 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from inspect import signature
-from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.minds.imagining.courses import Candidate, Course, PolicyProgram
-from beliefnest.minds.imagining.histories import Faces
 from beliefnest.minds.imagining.history_starts import Doubt, HistoryStarts
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.node_inference import ModelStart, start_of_model
 from beliefnest.minds.walking import Strategy
+from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised
@@ -104,7 +103,6 @@ class HistoryPolicies:
     side: Recording
     starts: HistoryStarts
     path: BeliefPath
-    faces: Faces
     _keys: dict[Course, tuple[TimelineKey, int]] = field(default_factory=dict)
 
     def of(self, policy: Callable[..., object], agent: str, name: str) -> PolicyProgram:
@@ -126,7 +124,7 @@ class HistoryPolicies:
 
         return program
 
-    def _shown(self, course: Course, agent: str) -> Any:
+    def _shown(self, course: Course, agent: str) -> PastSimulator:
         journal = self.side.journal
         known = self._keys.get(course)
         entries = self.starts.entries(course)
@@ -138,4 +136,4 @@ class HistoryPolicies:
         journal.append(key, entries[written:], course.tick)
         self._keys[course] = (key, len(entries))
         recording = self.side.on(key)
-        return self.faces.past(recording, normalised((*self.path, agent)), course.tick)
+        return PastSimulator(recording, normalised((*self.path, agent)), course.tick)

@@ -253,7 +253,7 @@ class ShownSimulator(ABC):
                 nothing), a `MindModel` of that agent, or a policy: a function that takes the
                 agent's simulator in the history and returns its next program. A policy with a
                 parameter `random` gets a `random.Random` by it, seeded for each history.
-            n: Number of histories.
+            n: Number of histories to draw; the result has those that agree.
             seed: Seed of every random choice.
             weights: Probabilities of candidates by name, by agent; None: uniform.
             evidence: Conditions at `until` that replace the percepts as evidence, in the language
@@ -270,9 +270,8 @@ class ShownSimulator(ABC):
         """
         last = self._tick if until is None else until
         asked = (since, last, actors, n, seed, weights, evidence, tolerance)
-        faces = (PastSimulator, self._live_on)
-        imagine_in = part("imagine")
-        imagined: Imagined = imagine_in(self._recording, self._path, asked, faces, on_progress)
+        imagine = part("imagine")
+        imagined: Imagined = imagine(self._recording, self._path, asked, self._live_on, on_progress)
         return imagined
 
     def _live_on(self, recording: Recording) -> Any:
