@@ -1,6 +1,7 @@
 """Import of Python objects by name: those of users, and parts of this package that lie above."""
 
 import difflib
+import functools
 import importlib
 import importlib.util
 import sys
@@ -143,6 +144,7 @@ def load(entry: EntryPoint, what: str) -> Any:
         raise InputError(f"{told_entry(entry, what)} cannot be imported: {told}") from error
 
 
+@functools.cache
 def _own_entries(group: str) -> EntryPoints:
     return distribution(_OWN).entry_points.select(group=group)
 

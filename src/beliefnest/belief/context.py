@@ -20,7 +20,7 @@ from beliefnest.world.double_chests import holds_items
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.memory import MemoryLimit, memory_limit
 from beliefnest.world.registry import Registry
-from beliefnest.world.signs import block_words, is_sign, plain_state
+from beliefnest.world.signs import block_words, plain_state
 from beliefnest.world.terrain import Terrain, chunks_of
 from beliefnest.world.values import Block, Box, Position, Sign
 
@@ -219,13 +219,6 @@ class BeliefContext:
     def block(self, number: int) -> Block:
         """Return the block of a number; -1 is unknown."""
         return number if number < self.registry.states else self.signs[number]
-
-    @cached_property
-    def sign_states(self) -> npt.NDArray[np.int32]:
-        """The block states of all kinds of signs."""
-        registry = self.registry
-        names = [name for name in registry.block_names if is_sign(name)]
-        return np.array([state for name in names for state in registry.state_ids(name)], np.int32)
 
     @property
     def signs(self) -> Mapping[int, Sign]:

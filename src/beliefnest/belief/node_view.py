@@ -19,6 +19,7 @@ from beliefnest.world.double_chests import ByEitherHalf, believed_container_at, 
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.signs import sign_states
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, DroppedItem, Position
 
@@ -112,7 +113,7 @@ class NodeView:
     def signs(self) -> Mapping[Position, str]:
         """The texts of known signs, in order of position; empty for a blank sign."""
         x, y, z = self.box.low
-        found = self.terrain.find(self._forest.context.sign_states.tolist()).tolist()
+        found = self.terrain.find(sign_states(self._forest.context.registry)).tolist()
         places = ((x + i, y + j, z + k) for i, j, k in found)
         return {place: self.texts.get(place, "") for place in places}
 

@@ -4,6 +4,8 @@ The text is on the front of the sign. It is part of the block, as a `Sign` among
 that every agent that sees the block sees the text.
 """
 
+import functools
+
 from beliefnest.errors import InputError
 from beliefnest.world.registry import Registry
 from beliefnest.world.texts import escaped, fault_of
@@ -19,6 +21,13 @@ LONGEST_LINE = 45
 def is_sign(name: str) -> bool:
     """Return True if a block name is that of a standing, hanging or wall sign."""
     return name.endswith("_sign")
+
+
+@functools.cache
+def sign_states(registry: Registry) -> tuple[int, ...]:
+    """Return the block states of all kinds of signs."""
+    names = (name for name in registry.block_names if is_sign(name))
+    return tuple(state for name in names for state in registry.state_ids(name))
 
 
 def sign_fault(text: str) -> str | None:

@@ -38,7 +38,7 @@ _NUMBERS = re.compile(r"[-+]?[\d.][-+\d., eE]*", re.ASCII)
 
 def is_well_formed(text: str) -> bool:
     """Return True if a text can be stored and sent: it has no half of a surrogate pair."""
-    return not any("\ud800" <= character <= "\udfff" for character in text)
+    return text.isascii() or not any("\ud800" <= character <= "\udfff" for character in text)
 
 
 def fault_of(text: str) -> str | None:
