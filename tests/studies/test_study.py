@@ -79,7 +79,7 @@ def test_several_templates_are_told_apart_everywhere(tmp_path):
 def test_invalid_combinations_are_listed(whole):
     invalid = bn.StudyResult.read(whole[0]).invalid
     assert [each["variation"]["count"] for each in invalid] == [1, 2, 3]
-    assert all("parameters.spot: [5, 1, 5] is not allowed" in each["why"] for each in invalid)
+    assert all("'spot[0] + spot[2] < 10' does not hold" in each["why"] for each in invalid)
 
 
 BACKENDS = [pytest.param("loky"), pytest.param("dask", marks=pytest.mark.extra("distributed"))]

@@ -132,7 +132,7 @@ def broken_constraint(
 def check_declared(
     document: Document, declared: Mapping[str, ParameterEntry], given: Mapping[str, object]
 ) -> None:
-    """Check that all given parameters are declared, and have values that they may have.
+    """Check that all given parameters are declared, and have values.
 
     Raises:
         ScenarioError: One does not.
@@ -143,22 +143,31 @@ def check_declared(
         if name not in declared:
             hint = nearest_or_all(str(name), [*declared] or ["none"], "declared are")
             raise document.fault((), f"there is no parameter {quoted(name)}{hint}")
-        if fault := _value_fault(declared[name], plain(wrapped(value))):
-            raise document.fault(("parameters", name), f"{quoted(value)} is not allowed; {fault}")
+        if value is None and None not in (declared[name].default, *(declared[name].values or ())):
+            raise document.fault(("parameters", name), "is None; give a value")
 
 
-def _value_fault(declared: ParameterEntry, value: object) -> str:
-    """Return what a parameter allows instead of a value; empty: it allows the value."""
+def _beyond(
+    document: Document, declared: Mapping[str, ParameterEntry], given: Mapping[str, object]
+) -> Iterator[str]:
+    """Yield a line about each given value that its parameter does not list."""
+    for name, each in given.items():
+        value = plain(wrapped(each))
+        if told := _listed_instead(declared[name], value):
+            place = document.key_at(("parameters", name))
+            yield f"{place}is given {quoted(value)}, and lists {told}; correct one of them"
+
+
+def _listed_instead(declared: ParameterEntry, value: object) -> str:
+    """Return what a parameter lists if a value is not among it; else an empty text."""
     if value == declared.default or (isinstance(value, str) and "${" in value):
         return ""
-    if value is None and not declared.values:
-        return "give a value"
     if declared.values and value not in declared.values:
-        return f"allowed are {', '.join(map(json.dumps, declared.values))}"
+        return ", ".join(map(json.dumps, declared.values))
     if declared.range is not None:
         low, high = declared.range
         if not isinstance(value, int | float) or not low <= value <= high:
-            return f"give a number from {low} to {high}"
+            return f"numbers from {low} to {high}"
     return ""
 
 
@@ -183,7 +192,8 @@ def with_parameters(
         # A `${...}` that names nothing is refused here too; it would be shown to people.
         _Filling(document, {}).node(document.root, ())
         return document
-    document = replace(document, notes=(*document.notes, *_unused(document, declared)))
+    notes = (*document.notes, *_unused(document, declared), *_beyond(document, declared, given))
+    document = replace(document, notes=notes)
     values = _resolved(
         document, {name: given.get(name, entry.default) for name, entry in declared.items()}
     )
