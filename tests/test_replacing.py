@@ -17,7 +17,7 @@ SOURCES = Path(beliefnest.__file__).parent
 WRITERS = {"write_text", "write_bytes"}
 APPENDING = {
     "llm/recorded_models.py": "appends a line to a recording",
-    "studies/study_folder.py": "appends a line to a file of lines",
+    "plan/spending.py": "appends a line to a file of lines",
     "timeline/export.py": "writes into a new folder that gets its name at the end",
 }
 """Files that open others for writing, and why these are not replaced."""

@@ -147,7 +147,7 @@ def test_wrong_input_ends_with_2(file, capsys, arguments, what):
 def test_an_unknown_suite_ends_with_2(file, capsys):
     status = run_command_line(["suite", "lo-tom", "--data", str(file(ROWS))])
     assert status == 2
-    assert "there are hi-tom, tomi, stories" in capsys.readouterr().err
+    assert "there are hi-tom, stories, tomi, food-trucks" in capsys.readouterr().err
 
 
 def test_the_sample_of_hi_tom_is_answered_right_at_every_order():

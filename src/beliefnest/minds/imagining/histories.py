@@ -12,8 +12,7 @@ from beliefnest.minds.imagining.courses import Course
 from beliefnest.minds.imagining.history_starts import HistoryStarts
 from beliefnest.minds.imagining.imagine_arguments import Evidence, goal_conditions
 from beliefnest.minds.imagining.particles import HistoryDraws, Lost, Particle
-from beliefnest.nest.face.given import check_branch_name, tick_of, whole
-from beliefnest.nest.face.shown import PastSimulator
+from beliefnest.nest.face.given import check_branch_name, whole
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.summed_state import StateSums
 from beliefnest.nest.past.timeline_state import TimelineState
@@ -21,7 +20,7 @@ from beliefnest.owned import Barred
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
-from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
+from beliefnest.world.paths import BeliefPath, normalised, path_text
 from beliefnest.world.values import Point
 from beliefnest.world.words import counted
 from beliefnest.worlds.scripted.world_facts import WorldFacts
@@ -32,22 +31,8 @@ if TYPE_CHECKING:  # These take long to import, and few histories are drawn or l
     from beliefnest.pictures.figure import Figure
 
 
-class HistorySimulator(PastSimulator):
-    """Read-only simulator in a history; belief paths start at its own path."""
-
-    def at(self, tick: int) -> "HistorySimulator":
-        """Return the simulator at another tick.
-
-        Raises:
-            TickError: The tick is after the end of the history, or before the start of the run.
-        """
-        then = self._recording.moment(self._path, tick_of(tick)).tick
-        return HistorySimulator(self._recording, self._path, then)
-
-    def __getitem__(self, path: str) -> "HistorySimulator":
-        """Return a belief in it at the same tick; `/` is itself."""
-        within = normalised((*self._path, *parse_path(path, self._recording.agents)))
-        return HistorySimulator(self._recording, within, self._tick)
+PastFace = Callable[[Recording, BeliefPath, int | None], Any]
+"""Function that makes the read-only simulator of a path at a tick, in which users see histories."""
 
 
 class History(Barred):
@@ -93,9 +78,10 @@ class History(Barred):
     @property
     def state(self) -> State:
         """The state of the history's world at its end."""
-        return self["/"].state
+        state: State = self["/"].state
+        return state
 
-    def at(self, tick: int) -> HistorySimulator:
+    def at(self, tick: int) -> Any:
         """Return the history's world at a tick; `at(tick)["/bob"]` is a belief in it.
 
         Raises:
@@ -131,15 +117,16 @@ class History(Barred):
                 found[tick] = feet
         return found
 
-    def __getitem__(self, path: str) -> HistorySimulator:
+    def __getitem__(self, path: str) -> Any:
         """Return a simulator at the end of the history; `/` is the history's world."""
         imagined = self._imagined
         recording = imagined._recorded(self._course)
-        return HistorySimulator(recording, imagined._path, self.tick)[path]
+        return imagined._past(recording, imagined._path, self.tick)[path]
 
     def figure(self, against: str | None = None) -> "Figure":
         """Draw the end of the history; mark differences from a belief of the nest, if given."""
-        return self["/"].figure(against)
+        figure: Figure = self["/"].figure(against)
+        return figure
 
     def fork(self, name: str = "fork") -> Any:
         """Return a simulator that continues the history on a branch, in a scripted world.
@@ -193,10 +180,11 @@ class Imagined(Barred):
         starts: HistoryStarts,
         until: int,
         side: Recording,
+        past: PastFace,
         live: Callable[[Recording], Any],
     ) -> None:
         self._recording, self._path, self._base = recording, path, base
-        self._starts, self._side, self._live = starts, side, live
+        self._starts, self._side, self._past, self._live = starts, side, past, live
         self._drawing = drawing
         self.since, self.until, self.n = base.tick, until, len(drawing.drawn)
         self.impossible: Lost | None = drawing.lost

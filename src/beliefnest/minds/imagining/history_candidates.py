@@ -3,14 +3,15 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from inspect import signature
+from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.minds.imagining.courses import Candidate, Course, PolicyProgram
+from beliefnest.minds.imagining.histories import PastFace
 from beliefnest.minds.imagining.history_starts import Doubt, HistoryStarts
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.node_inference import ModelStart, start_of_model
 from beliefnest.minds.walking import Strategy
-from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised
@@ -103,6 +104,7 @@ class HistoryPolicies:
     side: Recording
     starts: HistoryStarts
     path: BeliefPath
+    past: PastFace
     _keys: dict[Course, tuple[TimelineKey, int]] = field(default_factory=dict)
 
     def of(self, policy: Callable[..., object], agent: str, name: str) -> PolicyProgram:
@@ -124,7 +126,7 @@ class HistoryPolicies:
 
         return program
 
-    def _shown(self, course: Course, agent: str) -> PastSimulator:
+    def _shown(self, course: Course, agent: str) -> Any:
         journal = self.side.journal
         known = self._keys.get(course)
         entries = self.starts.entries(course)
@@ -136,4 +138,4 @@ class HistoryPolicies:
         journal.append(key, entries[written:], course.tick)
         self._keys[course] = (key, len(entries))
         recording = self.side.on(key)
-        return PastSimulator(recording, normalised((*self.path, agent)), course.tick)
+        return self.past(recording, normalised((*self.path, agent)), course.tick)

@@ -9,7 +9,7 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.errors import InputError
 from beliefnest.minds.imagining.course_agreement import Agreement, Tolerance, Witness
 from beliefnest.minds.imagining.courses import Candidate, CoursePlan
-from beliefnest.minds.imagining.histories import Imagined, weigh
+from beliefnest.minds.imagining.histories import Imagined, PastFace, weigh
 from beliefnest.minds.imagining.history_candidates import Candidates, HistoryPolicies
 from beliefnest.minds.imagining.history_starts import HistoryStarts
 from beliefnest.minds.imagining.imagine_arguments import Asked, Checked
@@ -37,7 +37,7 @@ def imagine_in(
     recording: Recording,
     path: BeliefPath,
     arguments: tuple[Any, ...],
-    live: Callable[[Recording], Any],
+    faces: tuple[PastFace, Callable[[Recording], Any]],
     on_progress: OnProgress | None,
 ) -> Imagined:
     """Draw histories; see `ShownSimulator.imagine`.
@@ -46,10 +46,11 @@ def imagine_in(
         recording: Recording of the nest.
         path: Path of the simulator that imagines.
         arguments: Values of `Asked`.
-        live: Function that makes a simulator that can act, on the timelines of a history.
+        faces: Functions that make the simulators of users: one to read at a tick, and one that can
+            act, on the timelines of a history.
         on_progress: As for `ShownSimulator.imagine`.
     """
-    asked = Asked(*arguments)
+    asked, (past, live) = Asked(*arguments), faces
     checked = Checked.of(recording, path, asked)
     base, end = checked.base, checked.end
     journal, history = recording.journal, recording.history
@@ -64,7 +65,7 @@ def imagine_in(
     )
     side.selected = dict(recording.selected)
     side.records.set_run(recording.records.run())
-    policies = HistoryPolicies(side, starts, path)
+    policies = HistoryPolicies(side, starts, path, past)
     candidates = Candidates(recording, path, base, end, starts, policies, len(asked.actors) == 1)
     starts.candidates = {
         agent: {name: candidates.of(agent, name, given) for name, given in named.items()}
@@ -87,7 +88,7 @@ def imagine_in(
     drawing = HistoryDraws(plan, _drawn(starts, checked, asked.seed), agreement, asked.seed)
     tell = on_progress or _say_nothing
     drawing.run(end.tick, lambda done, total: tell("imagining histories", done, total))
-    imagined = Imagined(recording, path, base, drawing, starts, end.tick, side, live)
+    imagined = Imagined(recording, path, base, drawing, starts, end.tick, side, past, live)
     if checked.evidence is not None:
         weigh(imagined, checked.evidence)
     _warn(imagined)

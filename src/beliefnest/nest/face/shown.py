@@ -271,7 +271,9 @@ class ShownSimulator(ABC):
         last = self._tick if until is None else until
         asked = (since, last, actors, n, seed, weights, evidence, tolerance)
         imagine = part("imagine")
-        imagined: Imagined = imagine(self._recording, self._path, asked, self._live_on, on_progress)
+        imagined: Imagined = imagine(
+            self._recording, self._path, asked, (HistorySimulator, self._live_on), on_progress
+        )
         return imagined
 
     def _live_on(self, recording: Recording) -> Any:
@@ -422,6 +424,24 @@ class PastSimulator(ShownSimulator):
     def child(self, agent: str) -> "PastSimulator":
         """Return the simulator of the belief that `agent` had in this one."""
         return PastSimulator(self._recording, self._child_path(agent), self._tick)
+
+
+class HistorySimulator(PastSimulator):
+    """Read-only simulator in a history; belief paths start at its own path."""
+
+    def at(self, tick: int) -> "HistorySimulator":
+        """Return the simulator at another tick.
+
+        Raises:
+            TickError: The tick is after the end of the history, or before the start of the run.
+        """
+        then = self._recording.moment(self._path, tick_of(tick)).tick
+        return HistorySimulator(self._recording, self._path, then)
+
+    def __getitem__(self, path: str) -> "HistorySimulator":
+        """Return a belief in it at the same tick; `/` is itself."""
+        within = normalised((*self._path, *parse_path(path, self._recording.agents)))
+        return HistorySimulator(self._recording, within, self._tick)
 
 
 class ShownNest:
