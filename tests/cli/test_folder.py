@@ -163,6 +163,20 @@ def test_the_folder_of_an_earlier_version_is_refused(
     assert "in a new folder" in line
 
 
+def test_a_report_whose_result_lacks_a_key_is_refused(
+    kept: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "done"
+    shutil.copytree(kept[1], folder)
+    report = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    del report["runs"][0]["condition"]
+    (folder / "run.json").write_text(json.dumps(report), encoding="utf-8")
+    assert run_command_line(["methods", str(folder)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "run.json is damaged" in line
+    assert "'condition'" in line
+
+
 def test_all_that_ran_is_exported_with_its_versions(
     kept: tuple[Path, Path], tmp_path: Path
 ) -> None:

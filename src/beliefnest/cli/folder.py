@@ -10,24 +10,16 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from beliefnest.cli.report import report_json
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text, replace_file
 from beliefnest.locking import holding, is_lock
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.outcome import ProbeOutcome
-from beliefnest.scenarios.record_forms import (
-    ExpectationForm,
-    ProbeForm,
-    UsageForm,
-    checked_form,
-    read_json,
-)
+from beliefnest.scenarios.record_forms import checked_form, read_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.yaml_reading import templates_file
-from beliefnest.studies.run_result import REPORT, read_report
+from beliefnest.studies.run_result import REPORT, ResultForm, read_report
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.timeline.lock import writer_lock
 
@@ -39,30 +31,6 @@ _SCENARIO = "scenario.yaml"
 _ANSWERS = "answers"
 _MOST_NAMED = 10
 _OTHER = "name another folder"
-
-
-class _TableForm(msgspec.Struct):
-    cells: dict[str, str]
-    notes: list[str]
-
-
-class _ResultForm(msgspec.Struct):
-    """Form of the result of a condition, as `outcome_json` writes it."""
-
-    condition: int | None
-    model: str
-    seed: int
-    ok: bool
-    ticks: int
-    seconds: float
-    reality: dict[str, Any]
-    beliefs: dict[str, dict[str, Any]]
-    expectations: list[ExpectationForm]
-    probes: list[ProbeForm]
-    failures: list[str]
-    usage: UsageForm
-    run_dir: str
-    table: _TableForm
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +60,7 @@ class ConditionFolder:
         if not file.is_file():
             return None
         content = read_json(file, _OTHER)
-        checked_form(content, _ResultForm, file, _OTHER)
+        checked_form(content, ResultForm, file, _OTHER)
         return content
 
     def begin(self) -> None:

@@ -95,13 +95,8 @@ class ScenarioStage:
         return self._run(sample, _Listener(answer, finish))
 
     def _run(self, sample: Mapping[str, Any], listener: _Listener) -> JudgedOutcome:
-        variation, number = Variation(sample["variation"]), sample["request"]
-        scenario = Scenario.varied(
-            read_document(sample["scenario"]),
-            sample["condition"],
-            variation.parameters,
-            variation.scene if variation.changes_scene else None,
-        )
+        document, number = read_document(sample["scenario"]), sample["request"]
+        scenario = Variation(sample["variation"]).scenario(document, sample["condition"])
         probe, seed = requests_of(scenario)[number - 1], sample["seed"]
         with self._turn, Nest.open(scenario, sample["world"], None, seed, self._worlds) as nest:
             nest.play()

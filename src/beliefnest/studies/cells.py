@@ -182,12 +182,7 @@ def _scenario(
     broken = design.broken_constraint(document, condition, variation)
     if broken is not None:
         raise broken
-    return Scenario.varied(
-        document,
-        condition,
-        variation.parameters,
-        variation.scene if variation.changes_scene else None,
-    )
+    return variation.scenario(document, condition)
 
 
 def _by_template(
@@ -225,8 +220,7 @@ def planned_cell(key: CellKey, document: Document, template: Template | None) ->
         BeliefNestError: They make no scenario.
     """
     variation = Variation(key.variation)
-    scene = variation.scene if variation.changes_scene else None
-    scenario = Scenario.varied(document, key.condition, variation.parameters, scene)
+    scenario = variation.scenario(document, key.condition)
     if template is None:
         return Cell(replace(key, content=content_of(document.text, scenario, None)), scenario)
     asked = _with_template(scenario, template, variation, document)

@@ -223,8 +223,8 @@ class _Place:
         if self.document is None:
             return Task.load(self.name, seed, **self.variation.values)
         varied = self.variation
-        scene = varied.scene if varied.changes_scene else None
-        return Task.instance_of(self.document, seed, self.condition, varied.parameters, scene)
+        change = varied.change
+        return Task.instance_of(self.document, seed, self.condition, varied.parameters, change)
 
     def invalid(self, why: str) -> Invalid:
         """Return an entry that says why this place makes no episode."""
@@ -262,7 +262,7 @@ def _cells(
         except InputError as error:
             yield place.invalid(str(error))
             continue
-        if place.document is not None and place.variation.changes_scene and has_program:
+        if place.document is not None and place.variation.change is not None and has_program:
             why = f"programs of files are not moved or renamed with the scene: {player.text}"
             yield place.invalid(why)
             continue

@@ -13,7 +13,6 @@ from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.drawn_map import with_map
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in, with_parameters
-from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.symmetry import SYMMETRIES
 from beliefnest.studies.variation import Variation
 
@@ -219,10 +218,9 @@ def _renamable(
 
 
 def _is_possible(document: Document, changes: Mapping[str, Any]) -> bool:
-    scene = Variation(changes).scene
     try:
         for condition in condition_numbers(document):
-            Scenario.varied(document, condition, None, scene)
+            Variation(changes).scenario(document, condition)
     except BeliefNestError:
         return False
     return True

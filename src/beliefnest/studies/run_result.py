@@ -12,7 +12,7 @@ from beliefnest.errors import InputError
 from beliefnest.files import read_regular
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.plan.cells import variation_id
-from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm
+from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, UsageForm
 from beliefnest.studies.forms import read_marked
 
 REPORT = "run.json"
@@ -21,10 +21,28 @@ FORM = "beliefnest run 1"
 _OTHER = "name another folder"
 
 
-class _RunForm(msgspec.Struct):
-    run_dir: str
-    probes: list[ProbeForm]
+class _TableForm(msgspec.Struct):
+    cells: dict[str, str]
+    notes: list[str]
+
+
+class ResultForm(msgspec.Struct):
+    """Form of the result of a condition, as `outcome_json` writes it."""
+
+    condition: int | None
+    model: str
+    seed: int
+    ok: bool
+    ticks: int
+    seconds: float
+    reality: dict[str, Any]
+    beliefs: dict[str, dict[str, Any]]
     expectations: list[ExpectationForm]
+    probes: list[ProbeForm]
+    failures: list[str]
+    usage: UsageForm
+    run_dir: str
+    table: _TableForm
 
 
 class _FailureForm(msgspec.Struct):
@@ -50,7 +68,7 @@ class _ReportForm(msgspec.Struct):
     scenario: str
     status: str
     settings: _SettingsForm
-    runs: list[_RunForm]
+    runs: list[ResultForm]
     failures: list[_FailureForm]
     versions: dict[str, str]
 

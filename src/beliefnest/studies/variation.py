@@ -10,7 +10,9 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.drawn_map import with_map
+from beliefnest.scenarios.loading import DocumentChange
 from beliefnest.scenarios.parameters import with_parameters
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.changes import MovedBySymmetry, Renamed
 from beliefnest.studies.scene_changes import SceneChange, SceneKind, changed_scene
 from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
@@ -38,9 +40,9 @@ class Variation:
         return {name: value for name, value in self.values.items() if name not in CHANGES}
 
     @property
-    def changes_scene(self) -> bool:
-        """Return True if the variation has a symmetry or new names."""
-        return any(name in CHANGES for name in self.values)
+    def change(self) -> DocumentChange | None:
+        """Return the change to the variation's symmetry and names; None: it has none."""
+        return self.scene if any(name in CHANGES for name in self.values) else None
 
     @property
     def key(self) -> str:
@@ -52,6 +54,15 @@ class Variation:
         """Return the variation in words, for people."""
         parts = (f"{name} {_short(value)}" for name, value in self.values.items())
         return ", ".join(parts) or "as written"
+
+    def scenario(self, document: Document, condition: int | None) -> Scenario:
+        """Return the variation of a scenario.
+
+        Raises:
+            ScenarioError: The variation is not a valid scenario.
+            InputError: The name of a symmetry, an agent or an item is unknown.
+        """
+        return Scenario.varied(document, condition, self.parameters, self.change)
 
     def scene(self, document: Document) -> Document:
         """Return the document with the variation's symmetry and names.
