@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -20,7 +20,7 @@ FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\])
 _UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
 _MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
 
-_Form = type[ScenarioFile] | type[WrittenFile]
+_F = TypeVar("_F", bound=ScenarioFile | WrittenFile)
 
 _LONGEST_FAULT = 160
 """Greatest number of characters of a fault that the validation found; it may quote the value."""
@@ -45,18 +45,16 @@ def check_form(document: Document) -> ScenarioFile:
     Raises:
         ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
     """
-    _check(document, ScenarioFile)
-    return msgspec.convert(plain(document.root), ScenarioFile)
+    return _checked(document, ScenarioFile)
 
 
-def check_written(document: Document) -> WrittenFile:
+def check_written(document: Document) -> ScenarioFile | WrittenFile:
     """Return the content of a document as written, with or without a map, as typed values.
 
     Raises:
         ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
     """
-    _check(document, WrittenFile if "map" in document.root.value else ScenarioFile)
-    return msgspec.convert(plain(document.root), WrittenFile)
+    return _checked(document, WrittenFile if "map" in document.root.value else ScenarioFile)
 
 
 def check_rules_form(rules: Mapping[str, object]) -> None:
@@ -70,11 +68,22 @@ def check_rules_form(rules: Mapping[str, object]) -> None:
     check_form(Document("task", wrapped(content), Path()))
 
 
-def _check(document: Document, form: _Form) -> None:
+def _checked(document: Document, form: type[_F]) -> _F:
     _check_texts(document, document.root, ())
-    error = _error_of(document.root, form)
-    if error:
-        raise _fault(document, error, form)
+    content = _content_of(document.root, form)
+    if isinstance(content, str):
+        raise _fault(document, content, form)
+    return content
+
+
+def _content_of(root: YamlNode, form: type[_F]) -> _F | str:
+    """Return a document's content as typed values, or what is wrong with it."""
+    try:
+        return msgspec.convert(plain(root), form)
+    except msgspec.ValidationError as error:
+        return str(error)
+    except InputError as error:  # Options of perception are checked as in code.
+        return f"{error} - at `$.perception`"
 
 
 def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
@@ -91,17 +100,7 @@ def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
         raise document.fault(path, "has half a character in it; write whole ones")
 
 
-def _error_of(root: YamlNode, form: _Form) -> str:
-    try:
-        msgspec.convert(plain(root), form)
-    except msgspec.ValidationError as error:
-        return str(error)
-    except InputError as error:  # Options of perception are checked as in code.
-        return f"{error} - at `$.perception`"
-    return ""
-
-
-def _fault(document: Document, error: str, form: _Form) -> ScenarioError:
+def _fault(document: Document, error: str, form: type[_F]) -> ScenarioError:
     match = _FAULT.fullmatch(error)
     if match is None:
         return document.fault((), shortened(error, _LONGEST_FAULT))
@@ -187,7 +186,9 @@ def _hint(name: str, path: KeyPath) -> str:
     return nearest_or_all(name, allowed, "keys are")
 
 
-def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str, form: _Form) -> KeyPath:
+def _locate(
+    root: YamlNode, steps: list[dict[str, str | None]], error: str, form: type[_F]
+) -> KeyPath:
     """Return the place of an error, for which msgspec writes `[...]` instead of mapping keys.
 
     For each `[...]`, try the mapping with only one entry at a time. The entry that still causes
@@ -201,7 +202,7 @@ def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str, form
             path.append(int(step["index"]))
         else:
             cuts = {key: _with_only(root, path, key) for key in _node_at(root, path).value}
-            key = next((key for key, cut in cuts.items() if _error_of(cut, form) == error), None)
+            key = next((key for key, cut in cuts.items() if _content_of(cut, form) == error), None)
             if key is None:
                 break
             root = cuts[key]

@@ -15,7 +15,7 @@ import msgspec
 from beliefnest.errors import BeliefNestError, ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, wrapped
 from beliefnest.scenarios.document_form import check_written
-from beliefnest.scenarios.format import FloorEntry, LegendEntry, MapEntry, WrittenFile
+from beliefnest.scenarios.format import FloorEntry, LegendEntry, MapEntry, ScenarioFile, WrittenFile
 from beliefnest.world.cuboids import cuboids
 from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
@@ -107,8 +107,8 @@ class _Drawing:
         file: Its content as typed values, with a map.
     """
 
-    def __init__(self, document: Document, file: WrittenFile) -> None:
-        assert isinstance(file.map, MapEntry)
+    def __init__(self, document: Document, file: ScenarioFile | WrittenFile) -> None:
+        assert isinstance(file, WrittenFile) and isinstance(file.map, MapEntry)
         self._document = document
         self._file = file
         self._map = file.map

@@ -9,6 +9,7 @@ from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, merged, wrapped
 from beliefnest.scenarios.document_form import check_form, check_written
 from beliefnest.scenarios.drawn_map import with_map
+from beliefnest.scenarios.format import ScenarioFile
 from beliefnest.scenarios.older_spellings import respelled
 from beliefnest.scenarios.parameters import text_of, with_parameters
 from beliefnest.world.texts import quoted
@@ -73,4 +74,6 @@ def scenario_in(
         chosen = change(chosen)
         told = YamlNode({**chosen.root.value, "conditions": wrapped(about)})
         chosen = replace(chosen, text=text_of(told))
-    return build_scenario(chosen, check_form(chosen), condition, written.conditions)
+    same = chosen.root is filled.root
+    file = written if same and isinstance(written, ScenarioFile) else check_form(chosen)
+    return build_scenario(chosen, file, condition, written.conditions)
