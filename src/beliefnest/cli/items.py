@@ -7,7 +7,8 @@ from rich.table import Table
 
 from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import ItemsOptions
-from beliefnest.studies.items.item_set import ItemSet
+from beliefnest.errors import InputError
+from beliefnest.studies.items.item_set import ItemSet, check_folder, read_description
 from beliefnest.studies.items.report import report_of
 from beliefnest.studies.study import Study
 from beliefnest.world.words import counted
@@ -21,14 +22,9 @@ def run_items(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The study or the folder is wrong, or a script failed.
     """
+    set_options = _set_options(options)
     with progress_on(options.study.stem) as on_progress:
-        made = Study.load(options.study).items(
-            name=options.study.stem,
-            held_out=options.held_out,
-            version=options.set_version,
-            changes=options.changes,
-            on_item=on_progress,
-        )
+        made = Study.load(options.study).items(**set_options, on_item=on_progress)
     differing = made.differences(options.out) if options.verify else []
     if not options.verify:
         made.write(options.out)
@@ -42,6 +38,25 @@ def run_items(options: ItemsOptions) -> int:
     }
     print_report(told, _parts(options, made, differing, report), as_json=options.json)
     return int(bool(differing))
+
+
+def _set_options(options: ItemsOptions) -> dict[str, Any]:
+    """Return name, share, version and changes of the set; with --verify those of the folder."""
+    given = {
+        "held_out": options.held_out,
+        "version": options.set_version,
+        "changes": options.changes,
+    }
+    if not options.verify:
+        own = {name: value for name, value in given.items() if value is not None}
+        check_folder(options.out, own.get("held_out", 0.0))
+        return {"name": options.study.stem, **own}
+    for name, value in given.items():
+        if value is not None:
+            option = "set-version" if name == "version" else name.replace("_", "-")
+            raise InputError(f"--{option} is for writing a set; --verify reads it from the folder")
+    there = read_description(options.out)
+    return {name: getattr(there, name) for name in ("name", *given)}
 
 
 def _parts(

@@ -387,10 +387,14 @@ class ItemsOptions:
         bool, typer.Option("--verify", help="Make the set again, and compare every byte.")
     ] = False
     held_out: Annotated[
-        float, typer.Option(metavar="SHARE", help="Share of seeds whose items are held out.")
-    ] = 0.0
-    set_version: Annotated[str, typer.Option(metavar="TEXT", help="Version of the set.")] = "1.0.0"
-    changes: Annotated[str, typer.Option(metavar="TEXT", help="Changes in this version.")] = ""
+        float | None, typer.Option(metavar="SHARE", help="Share of seeds whose items are held out.")
+    ] = None
+    set_version: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Version of the set (default 1.0.0).")
+    ] = None
+    changes: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Changes in this version.")
+    ] = None
     json: Json = False
 
 

@@ -1,7 +1,9 @@
 """Items of a study: texts, right answers, what shortcuts answer; sets, their parts and balance."""
 
 import json
+from dataclasses import replace
 
+import msgspec
 import pytest
 
 import beliefnest as bn
@@ -180,17 +182,45 @@ def test_a_set_is_made_again_byte_by_byte(folder, tmp_path, capsys):
     seeds = [{json.loads(line)["seed"] for line in part} for part in (lines, kept)]
     assert seeds[0].isdisjoint(seeds[1])
     assert len(lines) + len(kept) == 16
-    assert run_command_line([*command, "--held-out", "0.5", "--verify"]) == 0
+    assert run_command_line([*command, "--verify"]) == 0
     assert "made again with the same bytes" in capsys.readouterr().out
-    hidden.write_text("\n".join([*kept[:2], kept[2].replace("box", "bag"), *kept[3:]]), "utf-8")
-    assert run_command_line([*command, "--held-out", "0.5", "--verify"]) == 1
-    assert "held-out/items.jsonl: line 3 differs" in capsys.readouterr().out
+    changed = [*kept[:2], kept[2].replace("box", "bag"), *kept[3:]]
+    hidden.write_text("".join(f"{line}\n" for line in changed), "utf-8")
+    (tmp_path / "set" / "items.jsonl").write_text("".join(f"{each}\n" for each in lines[1:]))
+    (tmp_path / "set" / "notes.txt").write_text("mine", encoding="utf-8")
+    assert run_command_line([*command, "--verify"]) == 1
+    told = capsys.readouterr().out
+    assert "held-out/items.jsonl: line 3 differs" in told
+    assert f"items.jsonl: lines 1, 2, 3, 4, 5 and {len(lines) - 5} more differ" in told
+    assert "notes.txt: is not of the set" in told
+
+
+def test_what_was_held_out_stays_so(folder, tmp_path, capsys, made):
+    command = ["items", str(folder / "study.yaml"), "-o", str(tmp_path / "set")]
+    assert run_command_line([*command, "--held-out", "0.5"]) == 0
+    public = (tmp_path / "set" / "items.jsonl").read_bytes()
+    for share in ([], ["--held-out", "0.4"]):
+        assert run_command_line([*command, *share]) == 2
+        assert "holds a set with held_out 0.5" in capsys.readouterr().err
+    assert (tmp_path / "set" / "items.jsonl").read_bytes() == public
+    kept = {each.seed for each in replace(made, held_out=0.5).parts["held-out"]}
+    fewer = [each for each in made.items if each.factors["to"] == "left"]
+    more = replace(made, items=(*made.items, *(copied(each, each.seed + 1) for each in fewer)))
+    assert kept <= {each.seed for each in replace(more, held_out=0.5).parts["held-out"]}
+
+
+def copied(item: ItemRecord, seed: int) -> ItemRecord:
+    return msgspec.structs.replace(item, seed=seed)
 
 
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
         (["--verify"], "there is no set of items"),
+        (["--verify", "--held-out", "0.5"], "--held-out is for writing a set"),
+        (["--held-out", "0.000001"], "holds back none of 2 seeds"),
+        (["--held-out", "0.999999"], "holds back all of 2 seeds"),
+        (["--set-version", ""], "the version of the set is ''"),
         (["--held-out", "1"], "give a share of at least 0, below 1"),
     ],
 )

@@ -1,25 +1,75 @@
 """Folder of a set of items: its public and its held-out part, with what made them."""
 
 import json
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular, replace_file
+from beliefnest.files import decode_json, read_regular, replace_file
 from beliefnest.locking import holding
 from beliefnest.plan.cells import digest
 from beliefnest.studies.items.exports import card, croissant, tasks
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
 from beliefnest.version import VERSION
+from beliefnest.world.texts import quoted
+from beliefnest.world.words import counted, listed
 
 FORM = "beliefnest items 1"
 """Mark of folders of this version."""
 _ITEMS = "items.jsonl"
 _SET = "set.json"
 _WHOLE = 16**16
+_NAME = re.compile(r"[\w.-]+")
+_MOST_LINES = 5
+"""Greatest number of differing lines of a file that are named."""
+
+
+class SetDescription(msgspec.Struct, frozen=True):
+    """Part of `set.json` from which a set is made again; attributes as those of `ItemSet`."""
+
+    format: str
+    name: str
+    version: str
+    changes: str
+    held_out: float
+
+
+def read_description(folder: Path) -> SetDescription:
+    """Return the description of the set in a folder.
+
+    Raises:
+        InputError: The folder holds no set that this version can read.
+    """
+    try:
+        found = decode_json(read_regular(folder / _SET), SetDescription)
+    except (FileNotFoundError, NotADirectoryError):
+        raise InputError(f"there is no set of items at {folder}; make one first") from None
+    except (OSError, msgspec.DecodeError) as error:
+        raise InputError(f"{folder / _SET} cannot be read: {error}; make the set anew") from None
+    if found.format != FORM:
+        raise InputError(f"{folder} holds a set of another version; make it anew in a new folder")
+    return found
+
+
+def check_folder(folder: Path, held_out: float) -> None:
+    """Raise InputError if a set with a held-out share cannot be written into a folder."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file; name a folder")
+    if not folder.is_dir() or not any(folder.iterdir()):
+        return
+    if not (folder / _SET).is_file():
+        raise InputError(f"{folder} is not empty and holds no set of items; name another")
+    before = read_description(folder).held_out
+    if before != held_out:
+        raise InputError(
+            f"{folder} holds a set with held_out {before:g}, and {held_out:g} would make other "
+            "items public; give the same share, or name another folder"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +80,13 @@ class ItemSet:
         name: Name of the set.
         items: The items, in the order of the study.
         dropped: Questions that were dropped, with the reasons.
-        held_out: Share of seeds whose items are held out, from 0 to 1.
+        held_out: Probability with which the items of a seed are held out, from 0 to 1. The number
+            of the seed decides, so that a larger set publishes nothing that a smaller one held out.
         version: Version of the set.
         changes: What changed in this version.
+
+    Raises:
+        InputError: The name or version is no word, or all items would be in one part.
     """
 
     name: str
@@ -41,6 +95,20 @@ class ItemSet:
     held_out: float = 0.0
     version: str = "1.0.0"
     changes: str = ""
+
+    def __post_init__(self) -> None:
+        for what, text in (("name", self.name), ("version", self.version)):
+            if not isinstance(text, str) or not _NAME.fullmatch(text):
+                raise InputError(
+                    f"the {what} of the set is {quoted(text)}; give letters, digits, '_', '.', '-'"
+                )
+        if self.held_out and self.items and len(self.parts) < 2:
+            kept = "none" if self.parts["public"] else "all"
+            seeds = counted(len({each.seed for each in self.items}), "seed")
+            raise InputError(
+                f"held_out {self.held_out:g} holds back {kept} of {seeds}; give another share, or "
+                "more variations"
+            )
 
     @property
     def canary(self) -> str:
@@ -60,7 +128,7 @@ class ItemSet:
         }
         public = tuple(each for each in self.items if each.seed not in hidden)
         kept = tuple(each for each in self.items if each.seed in hidden)
-        return {"public": public} | ({"held-out": kept} if kept else {})
+        return {"public": public} | ({"held-out": kept} if kept and public else {})
 
     def files(self) -> dict[str, bytes]:
         """Return the files of the folder by path; the same set gives the same bytes."""
@@ -89,31 +157,31 @@ class ItemSet:
             **tasks(self.name, self.version),
         }
 
-    def write(self, folder: Path) -> None:
-        """Write the set into a folder; raise InputError if it holds something else."""
-        if folder.exists() and not folder.is_dir():
-            raise InputError(f"{folder} is a file; name a folder")
-        if folder.is_dir() and any(folder.iterdir()) and not (folder / _SET).is_file():
-            raise InputError(f"{folder} is not empty and holds no set of items; name another")
-        folder.mkdir(parents=True, exist_ok=True)
-        with holding(folder):
-            for name, content in self.files().items():
-                (folder / name).parent.mkdir(exist_ok=True)
-                replace_file(folder / name, content)
-
-    def differences(self, folder: Path) -> list[str]:
-        """Return a line for each file of a folder that differs from this set.
+    def write(self, folder: str | Path) -> None:
+        """Write the set into a folder.
 
         Raises:
-            InputError: The folder holds no set, or a file cannot be read.
+            InputError: The folder holds something else, or a set with another held-out share.
         """
-        if not (folder / _SET).is_file():
-            raise InputError(f"there is no set of items at {folder}; make one without --verify")
-        return [
-            line
-            for name, content in self.files().items()
-            for line in _compared(folder, name, content)
-        ]
+        place = Path(folder)
+        check_folder(place, self.held_out)
+        place.mkdir(parents=True, exist_ok=True)
+        with holding(place):
+            for name, content in self.files().items():
+                (place / name).parent.mkdir(exist_ok=True)
+                replace_file(place / name, content)
+
+    def differences(self, folder: str | Path) -> list[str]:
+        """Return a line for each file of a folder that differs from this set, or is not of it.
+
+        Raises:
+            InputError: A file cannot be read.
+        """
+        place, files = Path(folder), self.files()
+        found = [line for name in files for line in _compared(place, name, files[name])]
+        there = (each for each in sorted(place.rglob("*")) if each.is_file())
+        names = (each.relative_to(place).as_posix() for each in there)
+        return [*found, *(f"{name}: is not of the set" for name in names if name not in files)]
 
 
 def _lines(records: Iterable[ItemRecord | DroppedQuestion]) -> bytes:
@@ -129,7 +197,14 @@ def _compared(folder: Path, name: str, content: bytes) -> Sequence[str]:
         raise InputError(f"cannot read {folder / name}: {error.strerror}") from error
     if old == content:
         return []
-    ours, theirs = content.splitlines(), old.splitlines()
-    pairs = zip(ours, theirs, strict=False)
-    line = next((n for n, (a, b) in enumerate(pairs, 1) if a != b), min(len(ours), len(theirs)) + 1)
-    return [f"{name}: line {line} differs"]
+    pairs = zip_longest(content.splitlines(), old.splitlines())
+    lines = [str(number) for number, (ours, theirs) in enumerate(pairs, 1) if ours != theirs]
+    if not lines:
+        return [f"{name}: differs in its line ends"]
+    more = len(lines) - _MOST_LINES
+    shown = [*lines[:_MOST_LINES], *([f"{more} more"] if more > 0 else [])]
+    return [
+        f"{name}: line {lines[0]} differs"
+        if len(lines) == 1
+        else f"{name}: lines {listed(shown)} differ"
+    ]
