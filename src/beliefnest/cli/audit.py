@@ -10,7 +10,16 @@ from beliefnest.errors import InputError
 from beliefnest.suites.stories.audit import Audit, Finding, audit, read_published
 from beliefnest.world.words import counted
 
-_FOR_SUITES = ("rows", "limit", "claims_from", "out", "strict")
+_FOR_SUITES = {
+    "rows": None,
+    "limit": None,
+    "claims_from": None,
+    "out": None,
+    "strict": False,
+    "world": "scripted",
+    "seed": 0,
+}
+"""Options that an audit does not have, with their defaults."""
 
 
 def run_audit(options: SuiteOptions) -> int:
@@ -19,8 +28,8 @@ def run_audit(options: SuiteOptions) -> int:
     Raises:
         BeliefNestError: The file cannot be read, or an option is for suites.
     """
-    for name in _FOR_SUITES:
-        if getattr(options, name):
+    for name, default in _FOR_SUITES.items():
+        if getattr(options, name) != default:
             raise InputError(f"--{name.replace('_', '-')} is for suites; leave it out of an audit")
     found = read_published(options.path)
     with progress_on("audit") as on_progress:

@@ -95,6 +95,59 @@ def test_what_hearers_believe_is_an_assumption(tmp_path, capsys):
     assert "hearers believe" in undetermined["assumption"]
 
 
+LIE = """\
+1 Ann entered the den.
+2 The nut is in the box.
+3 Ann said that the nut is in the jar.
+4 Where is the nut really?\tLABEL
+5 Where was the nut at the beginning?\tLABEL
+6 Where does Ann think the nut is?\tLABEL
+"""
+
+
+@pytest.mark.parametrize(("label", "wrong"), [("box", 0), ("jar", 2), ("crate", 3)])
+def test_what_is_said_excuses_only_what_it_may_change(tmp_path, label, wrong):
+    """Words change neither reality nor the beginning, and name no crate."""
+    file = tmp_path / "lie.txt"
+    file.write_text(LIE.replace("LABEL", label), encoding="utf-8")
+    done = audit(read_published(file))
+    assert (done.items, len(done.wrong)) == (3, wrong)
+    assert len(done.undetermined) == (label == "jar")
+
+
+def test_words_about_another_thing_excuse_nothing(tmp_path):
+    file = tmp_path / "other.txt"
+    text = LIE.replace("LABEL", "box").replace("that the nut", "that the fig")
+    file.write_text(text.replace("2 The", "2 The fig is in the jar.\n2 The"), encoding="utf-8")
+    assert not audit(read_published(file)).wrong
+    file.write_text(file.read_text().replace("\tbox", "\tjar"), encoding="utf-8")
+    assert len(audit(read_published(file)).wrong) == 3
+
+
+@pytest.mark.parametrize(
+    ("label", "wrong"),
+    [
+        ("in the red box of the den", 0),
+        ("The pear is in the red box.", 0),
+        ("the red_box", 0),
+        (["red box", "the red box"], 0),
+        ("the box", 1),
+        ("not in the red box", 1),
+    ],
+)
+def test_labels_name_a_place_in_their_own_words(tmp_path, label, wrong):
+    told = "Ann entered the den. The pear is in the red box. The fig is in the box."
+    chat = [
+        {"role": "system", "content": "Answer."},
+        {"role": "user", "content": told + " Where is the pear?"},
+    ]
+    for row in ({"input": f"{told} Where is the pear?"}, {"input": chat}):
+        file = tmp_path / "rows.jsonl"
+        file.write_text(json.dumps({**row, "target": label}), encoding="utf-8")
+        done = audit(read_published(file))
+        assert (done.items, len(done.wrong), done.unread) == (1, wrong, ())
+
+
 def test_sentences_that_are_not_read_are_named(tmp_path, capsys):
     rows = [
         {"input": "Noor makes a cappuccino. Where is the milk?", "target": "jug"},
@@ -109,7 +162,7 @@ def test_sentences_that_are_not_read_are_named(tmp_path, capsys):
     assert "row 1: sentence 1: 'Noor makes a cappuccino.' is no sentence of a story" in out
     assert "row 2" in out
     assert "asks no question" in out
-    assert "row 3: has no answer: columns are narrative, question" in out
+    assert "row 3: has no text of the answer, which is read from answer, target" in out
     assert "1 item answered: 0 wrong, 0 undetermined; 3 could not be read" in out
 
 
@@ -120,6 +173,8 @@ def test_sentences_that_are_not_read_are_named(tmp_path, capsys):
         (["empty.json"], "holds no rows"),
         (["broken.json"], "is no JSON"),
         (["empty.json", "--rows", "1"], "--rows is for suites"),
+        (["empty.json", "--limit", "0"], "--limit is for suites"),
+        (["empty.json", "--world", "nowhere"], "--world is for suites"),
         ([], "0 files are given"),
     ],
 )

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from beliefnest.files import read_regular
+from beliefnest.suites.stories.answer_check import is_told_of
 from beliefnest.suites.stories.data import ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.own import read_own
 from beliefnest.suites.stories.played_story import Knowing
@@ -112,11 +113,7 @@ def _of_story(asked: StoryItems) -> Iterator[Finding]:
         return
     others = dict(_otherwise(asked, missed))
     for each in missed:
-        fault, assumption = each.data_fault, others.get(each.item.row)
-        if assumption is None and asked.story.tells:
-            assumption = "another rule of what hearers believe"
-        elif assumption is None and each.answer.text is None:
-            assumption = "something that the story does not say"
+        fault, assumption = each.data_fault, others.get(each.item.row) or _unsaid(asked, each)
         yield Finding(
             row=each.item.row,
             question=each.item.question.text,
@@ -126,6 +123,17 @@ def _of_story(asked: StoryItems) -> Iterator[Finding]:
             is_wrong=fault is not None or assumption is None,
             assumption=assumption,
         )
+
+
+def _unsaid(asked: StoryItems, missed: JudgedAnswer) -> str | None:
+    """Return what a label may rest on that the text leaves open; None: nothing."""
+    question, label = missed.item.question, missed.item.expected
+    is_place = not (question.door or question.sign)
+    if is_place and label not in {None, *(place.container for place in asked.story.places)}:
+        return None
+    if is_told_of(asked.story, question):
+        return "another rule of what hearers believe"
+    return "something that the story does not say" if missed.answer.text is None else None
 
 
 def _otherwise(asked: StoryItems, missed: list[JudgedAnswer]) -> Iterator[tuple[int, str]]:

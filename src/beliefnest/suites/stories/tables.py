@@ -60,10 +60,10 @@ def read_table(path: Path) -> ReadStories:
                 stories[told] = story_of(lines)
             question = parse_question(asked)
             check_question(stories[told], question)
+            expected = _expected(answer, stories[told], question)
         except InputError as error:
             unread.append(Unread(where, (str(error),)))
             continue
-        expected = _named(answer, stories[told], question)
         items.setdefault(told, []).append(BatteryItem(number, question, expected))
     found = tuple(StoryItems(stories[each], tuple(asked)) for each, asked in items.items())
     return ReadStories(found, tuple(unread))
@@ -103,30 +103,46 @@ def _json_values(path: Path, text: str) -> Sequence[Any]:
     return value if isinstance(value, list) else []
 
 
-def _parts(row: _Row) -> tuple[str, str, str]:
-    """Return story, question and answer of a row."""
+def _parts(row: _Row) -> tuple[str, str, list[str]]:
+    """Return story, question and answers of a row; several answers are meant as one."""
     asked = _first(row, _QUESTION)
     if isinstance(asked, dict):
         # OpenToM has the answer beside the question.
         row = {**row, **asked}
-        asked = _first(asked, _QUESTION)
-    told, answer = _first(row, _STORY), _first(row, _ANSWER)
-    options = _first(row, _OPTIONS)
-    if isinstance(answer, list) and len(answer) == 1:
-        answer = answer[0]
-    for name, value in (("story", told), ("question", asked), ("answer", answer)):
-        if not isinstance(value, str) or not value.strip():
-            raise InputError(
-                f"has no {name}: columns are {', '.join(map(str, row))}; {name}s are read from "
-                f"{', '.join({'story': _STORY, 'question': _QUESTION, 'answer': _ANSWER}[name])}"
-            )
-    if told == asked:
-        # The question is the last sentence of the text.
-        told, _, asked = _last_question(told)
-    if isinstance(options, list) and (letter := _LETTER.fullmatch(answer.strip())):
-        place = ord(letter[1]) - ord("A")
-        answer = str(options[place]) if place < len(options) else answer
-    return told.strip(), asked.strip(), answer.strip()
+    told = "\n".join(_texts(row, "story", _STORY))
+    question = "\n".join(_texts(row, "question", _QUESTION))
+    answers, options = _texts(row, "answer", _ANSWER), _first(row, _OPTIONS)
+    if told == question:
+        told, question = _last_question(told)
+    if isinstance(options, list):
+        answers = [_of_letter(each, options) for each in answers]
+    return told.strip(), question.strip(), answers
+
+
+def _of_letter(answer: str, options: Sequence[Any]) -> str:
+    """Return the option of a letter; another answer stays."""
+    letter = _LETTER.fullmatch(answer.strip())
+    place = -1 if letter is None else ord(letter[1]) - ord("A")
+    return str(options[place]) if 0 <= place < len(options) else answer
+
+
+def _texts(row: _Row, what: str, names: Sequence[str]) -> list[str]:
+    """Return the texts of a column; of a chat, the words of the user.
+
+    Raises:
+        InputError: The row has no such column, or no text in it.
+    """
+    value = _first(row, names)
+    if isinstance(value, list) and all(isinstance(each, dict) for each in value):
+        value = [each.get("content") for each in value if each.get("role", "user") == "user"]
+    texts = [value] if isinstance(value, str) else value
+    is_told = isinstance(texts, list) and all(isinstance(t, str) and t.strip() for t in texts)
+    if not texts or not is_told:
+        raise InputError(
+            f"has no text of the {what}, which is read from {', '.join(names)}; columns are "
+            f"{', '.join(map(str, row))}"
+        )
+    return texts
 
 
 def _first(row: _Row, names: Sequence[str]) -> Any:
@@ -134,13 +150,13 @@ def _first(row: _Row, names: Sequence[str]) -> Any:
     return next((low[name] for name in names if name in low), None)
 
 
-def _last_question(text: str) -> tuple[str, str, str]:
-    """Return a text without its last question, nothing, and the question."""
+def _last_question(text: str) -> tuple[str, str]:
+    """Return a text without its last question, and the question."""
     sentences = _sentences(text)
     asked = [number for number, each in enumerate(sentences) if each.endswith("?")]
     if not asked:
         raise InputError(f"{quoted(text)} asks no question; end it with one")
-    return " ".join(sentences[: asked[-1]]), "", sentences[asked[-1]]
+    return " ".join(sentences[: asked[-1]]), sentences[asked[-1]]
 
 
 def _sentences(text: str) -> list[str]:
@@ -162,13 +178,30 @@ def _lines(text: str) -> tuple[list[Line], list[str]]:
     return lines, faults
 
 
-def _named(answer: str, story: Story, question: Question) -> str | None:
-    """Return an answer as the name that the story has for it; the answer itself if it has none."""
+def _expected(answers: Sequence[str], story: Story, question: Question) -> str | None:
+    """Return the one answer of a row, as the story names it.
+
+    Raises:
+        InputError: Answers name several places.
+    """
     if question.door is not None or question.sign is not None:
-        return answer.casefold() if question.door is not None else answer
-    wanted = _bare(answer)
-    names = dict.fromkeys(place.container for place in story.places)
-    return next((each for each in names if _bare(each) == wanted), answer)
+        named = dict.fromkeys(a.strip().casefold() if question.door else a for a in answers)
+    else:
+        named = dict.fromkeys(_named(each.strip(), story) for each in answers)
+    if len(named) > 1:
+        raise InputError(f"has several answers, {', '.join(map(quoted, named))}; give one")
+    return next(iter(named))
+
+
+def _named(answer: str, story: Story) -> str:
+    """Return the one container that an answer names; the answer itself if it names none."""
+    words = f" {_bare(answer)} "
+    known = {_bare(place.container): place.container for place in story.places}
+    found = [each for each in known if f" {each} " in words]
+    # Of `red box` and `box`, the longer name is meant.
+    whole = [a for a in found if not any(a != b and f" {a} " in f" {b} " for b in found)]
+    denied = re.search(r"\b(not|no|never)\b|n't\b", answer)
+    return known[whole[0]] if len(whole) == 1 and not denied else answer
 
 
 def _bare(name: str) -> str:
