@@ -277,6 +277,14 @@ def test_copies_have_masks_for_each_row_and_go_on_alike() -> None:
             assert repr(env.step({"bob": np.int64(0)})) == repr(other.step({"bob": np.int64(0)}))
 
 
+def test_more_actions_than_fit_are_refused_and_parts_of_a_dict_are_not_counted() -> None:
+    for many in (400, 10**9):
+        with pytest.raises(bn.InputError, match="more than 100,000 actions; give smaller sizes"):
+            room(sizes={"containers": many, "items": 300}, observations="dict")
+    scenario = bn.Scenario.from_mapping(ROOM)
+    parallel_env(scenario, actions="skills", sizes={"containers": 400, "items": 300}).close()
+
+
 @pytest.mark.parametrize("action", [-1, 10**6, 1.5, "x", None, {}, float("inf"), 10**30])
 def test_numbers_that_do_not_exist_are_refused_in_one_line(action: Any) -> None:
     with closing(room(agents=["ann"])) as env:

@@ -214,20 +214,26 @@ def test_a_deadline_of_the_task_terminates_and_a_limit_of_rounds_truncates() -> 
         ({"phrases": "yes"}, "phrases is 'yes'; give a list of texts"),
         ({"items": [3]}, r"items is \(3,\); give a list of texts"),
         ({"seed": -1}, "seed is -1; environments take whole numbers from 0 on"),
+        ({"agents": []}, "agents is empty; name agents that act"),
+        ({"parameters": 3}, "parameters is 3; give values by name"),
     ],
 )
 def test_options_of_wrong_kinds_are_refused_in_one_line(options: Any, message: str) -> None:
     with pytest.raises(bn.InputError, match=message):
         parallel_env("sally-anne", **options)
+    with pytest.raises(bn.InputError, match="None is no scenario; give a name, a file, or an"):
+        parallel_env(None)  # type: ignore[arg-type]
 
 
 def test_functions_of_the_user_return_numbers_and_truths() -> None:
     for options, message in (
         (
             {"reward": lambda nest, agent: "much"},
-            "reward returned 'much' for anne; return a number",
+            "reward returned 'much' for anne; return a finite number",
         ),
-        ({"reward": lambda nest, agent: None}, "reward returned None for anne; return a number"),
+        ({"reward": lambda nest, agent: None}, "reward returned None for anne; return a finite"),
+        ({"reward": lambda nest, agent: float("nan")}, "reward returned nan for anne; return a"),
+        ({"reward": lambda nest, agent: 10**400}, "reward returned 10{99}.* for anne; return a"),
         ({"ends": lambda nest: None}, "ends returned None; return True or False"),
         ({"ends": lambda nest: "no"}, "ends returned 'no'; return True or False"),
     ):

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gymnasium.vector.utils import batch_space
 from tests.env.test_flat import ROOM
 
 import beliefnest as bn
@@ -100,5 +101,7 @@ def test_there_are_as_many_copies_as_processes() -> None:
     scene = bn.Scenario.from_mapping(ROOM)
     with closing(vector_env(scene, 1)) as env:
         env.reset(seed=0)
+        with pytest.raises(bn.InputError, match=r"step got \d actions?; give \d, one for"):
+            env.step(batch_space(env.single_action_space, 7).sample())
         with pytest.raises(bn.InputError, match='use actions="flat"'):
             env.action_masks()

@@ -89,3 +89,17 @@ def test_what_cannot_be_used_is_told(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(site))
     with pytest.raises(InputError, match="several installed packages declare 'mars'"):
         check_world("mars")
+
+
+def test_what_is_no_task_and_no_suite_is_refused_in_one_line(tmp_path, monkeypatch, capsys):
+    declared = "[beliefnest.tasks]\nbare = bare\n[beliefnest.suites]\nlists = bare:read\n"
+    install(tmp_path, "bare", declared)
+    (tmp_path / "bare.py").write_text("def read(path, rows):\n    return []\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    assert run_command_line(["play", "bare"]) == 2
+    assert "the task 'bare' of the installed package bare (bare) has no" in " ".join(
+        capsys.readouterr().err.split()
+    )
+    assert run_command_line(["suite", "lists", "--data", "bare.py"]) == 2
+    assert "the suite lists read list, no ReadStories" in capsys.readouterr().err

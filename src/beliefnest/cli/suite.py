@@ -12,7 +12,7 @@ from beliefnest.cli.films import run_films
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError
 from beliefnest.suites import FILMS, story_reader
-from beliefnest.suites.stories.data import StoryItems, Unread
+from beliefnest.suites.stories.data import ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.suite import (
     JudgedAnswer,
     Score,
@@ -52,6 +52,11 @@ def run_suite(options: SuiteOptions) -> int:
     if options.out is not None:
         raise InputError(f"--out is for films; the suite {options.name} writes no files")
     found = read(options.path, rows)
+    if not isinstance(found, ReadStories):
+        raise InputError(
+            f"the suite {options.name} read {type(found).__name__}, no ReadStories; see "
+            "docs/plugins.md"
+        )
     stories = (found.whole() if options.strict else found.stories)[: options.limit]
     if not stories:
         found.whole()

@@ -100,6 +100,8 @@ def parallel_env(
         PathError: There is no such agent or belief.
         InputError: Another argument is invalid.
     """
+    if agents is not None and not agents:
+        raise InputError("agents is empty; name agents that act, or leave it out for all")
     made, described, _ = _classes()
     options = described(
         world=world,
@@ -212,6 +214,10 @@ def _loaded(
     from beliefnest.scenarios.rules import GoalEntry
     from beliefnest.scenarios.scenario import Scenario
 
+    if not isinstance(scenario, str | Scenario | Task):
+        raise InputError(f"{scenario!r:.100} is no scenario; give a name, a file, or an object")
+    if not isinstance(parameters, Mapping):
+        raise InputError(f"parameters is {parameters!r:.100}; give values by name")
     if isinstance(scenario, str):
         found = _named(scenario, condition, parameters)
     elif parameters or condition is not None:

@@ -1,8 +1,10 @@
 """Scenario as a multi-agent environment with PettingZoo's parallel interface."""
 
+import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Literal, cast
 
 import numpy as np
@@ -218,12 +220,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         context = context_of(scenario.setting)
         if isinstance(options.nested, int):
             check_nested(context, self.possible_agents, options.nested)
-        speaks = any(map(self._may_speak, self.possible_agents))
+        self._speaks = any(map(self._may_speak, self.possible_agents))
         cells = (
             self._cells_of(each, a) for each in (self._task, *tried) for a in self.possible_agents
         )
-        most = {**self._bounds.most, "cells": max(map(len, cells))}
-        self._flat = FlatActions(self._calls, most, speaks=speaks)
+        self._most = {**self._bounds.most, "cells": max(map(len, cells))}
         self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
         self._nested_of = {
             agent: tuple(path for path in self._nested if path[0] == agent)
@@ -240,6 +241,10 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._seed = options.seed - 1
         self._spaces = {each: self._spaces_of() for each in self.possible_agents}
         self._forget()
+
+    @cached_property
+    def _flat(self) -> FlatActions:
+        return FlatActions(self._calls, self._most, speaks=self._speaks)
 
     def _forget(self) -> None:
         """Begin a life without a world."""
@@ -751,11 +756,11 @@ def _seed(seed: object) -> int:
 def _number(earned: Any, agent: str) -> float:
     """Return what a function of the user gives as a reward; raise InputError for no number."""
     try:
-        if not isinstance(earned, str | bytes):
+        if not isinstance(earned, str | bytes) and math.isfinite(earned):
             return float(earned)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         pass
-    raise InputError(f"reward returned {earned!r:.100} for {agent}; return a number")
+    raise InputError(f"reward returned {earned!r:.100} for {agent}; return a finite number")
 
 
 def _truth(ended: Any) -> bool:

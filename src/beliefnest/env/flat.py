@@ -4,10 +4,11 @@ A number always stands for the same skill with the same numbers of things. Which
 is computed from the belief of their agent alone.
 """
 
+import math
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import islice, product
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,12 @@ from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.values import Box, Position, block_at
 
 _NEAR = 2
+_MOST_OFFERS = 100_000
+"""Greatest number of actions by number."""
+_TOO_MANY = (
+    f"actions='flat' would have more than {_MOST_OFFERS:,} actions; give smaller sizes, or choose "
+    "actions='skills'"
+)
 _GOALS = ("agent", "container", "door", "lever", "button", "sign", "place", "cell")
 """Parts that name somewhere to go."""
 
@@ -81,11 +88,17 @@ class FlatActions:
 
     Attributes:
         offers: The actions; the first one is to do nothing.
+
+    Raises:
+        InputError: There are more than 100,000.
     """
 
     def __init__(self, calls: Calls, most: Mapping[str, int], *, speaks: bool) -> None:
         self._calls = calls
-        self.offers = tuple(_offers(calls, most, speaks=speaks and most["agents"] > 1))
+        offers = _offers(calls, most, speaks=speaks and most["agents"] > 1)
+        self.offers = tuple(islice(offers, _MOST_OFFERS + 1))
+        if len(self.offers) > _MOST_OFFERS:
+            raise InputError(_TOO_MANY)
 
     def call(self, number: object, mind: ActorMind) -> Call:
         """Return the call that a number stands for.
@@ -180,6 +193,8 @@ def _offers(calls: Calls, most: Mapping[str, int], *, speaks: bool) -> Iterator[
 
 
 def _each(skill: str, sizes: Mapping[str, int]) -> Iterator[Offer]:
+    if math.prod(sizes.values()) > _MOST_OFFERS:
+        raise InputError(_TOO_MANY)
     for numbers in product(*map(range, sizes.values())):
         yield Offer(skill, tuple(zip(sizes, numbers, strict=True)))
 

@@ -16,6 +16,7 @@ from beliefnest.env.environment import BeliefEnv, BeliefSpace
 from beliefnest.env.saving import check_no_options
 from beliefnest.errors import BeliefNestError, InputError, WorkerError
 from beliefnest.world.seeds import checked_seed
+from beliefnest.world.words import counted
 
 _Flags = npt.NDArray[np.bool_]
 _PATIENCE_S = 30.0
@@ -209,9 +210,13 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         if not self._latest:
             raise InputError("no episode has begun; call reset() first")
         chosen: dict[int, dict[str, Any]] = {}
-        for (number, agent), action in zip(
-            self.rows, iterate(self.action_space, actions), strict=True
-        ):
+        each_row = list(iterate(self.action_space, actions))
+        if len(each_row) != len(self.rows):
+            raise InputError(
+                f"step got {counted(len(each_row), 'action')}; give {len(self.rows)}, one for each "
+                "agent of each copy"
+            )
+        for (number, agent), action in zip(self.rows, each_row, strict=True):
             chosen.setdefault(number, {})[agent] = action
         over = {number for (number, _), each in self._latest.items() if each.is_over}
         return self._advance(

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.importing import installed, installed_names, load
+from beliefnest.importing import installed, installed_names, load, told_entry
 from beliefnest.world.texts import quoted
 
 __all__ = ["generated", "is_task", "parameters_of", "task_names"]
@@ -68,4 +68,8 @@ def _module(name: str) -> Any:
         raise UnknownNameError(
             f"there is no task {quoted(name)}; there are {', '.join(task_names())}"
         )
-    return load(entry, "task")
+    task = load(entry, "task")
+    for part in ("PARAMETERS", "instance"):
+        if not hasattr(task, part):
+            raise InputError(f"{told_entry(entry, 'task')} has no {part}; see docs/plugins.md")
+    return task
