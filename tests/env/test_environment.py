@@ -318,7 +318,17 @@ def test_actions_that_are_no_mapping_are_refused(actions):
 
 
 @pytest.mark.parametrize(
-    "action", [None, 3, {}, {"skill": float("inf")}, {"skill": -1}, {"skill": "x" * 10_000}, []]
+    "action",
+    [
+        None,
+        3,
+        {},
+        {"skill": float("inf")},
+        {"skill": -1},
+        {"skill": "x" * 10_000},
+        {"skill": True},
+        [],
+    ],
 )
 def test_what_is_no_action_is_refused_in_one_line(action):
     env = make(actions="skills")

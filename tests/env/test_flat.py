@@ -285,7 +285,7 @@ def test_more_actions_than_fit_are_refused_and_parts_of_a_dict_are_not_counted()
     parallel_env(scenario, actions="skills", sizes={"containers": 400, "items": 300}).close()
 
 
-@pytest.mark.parametrize("action", [-1, 10**6, 1.5, "x", None, {}, float("inf"), 10**30])
+@pytest.mark.parametrize("action", [-1, 10**6, 1.5, "x", None, {}, float("inf"), 10**30, True])
 def test_numbers_that_do_not_exist_are_refused_in_one_line(action: Any) -> None:
     with closing(room(agents=["ann"])) as env:
         env.reset(seed=0)

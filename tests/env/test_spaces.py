@@ -211,6 +211,7 @@ def test_a_deadline_of_the_task_terminates_and_a_limit_of_rounds_truncates() -> 
         ({"nested": -1}, "nested is -1; give paths, or a depth from 0 on"),
         ({"nested": True}, "nested is True; give paths"),
         ({"phrases": [3]}, r"phrases is \[3\]; give a list of texts"),
+        ({"phrases": ["x" * 300]}, "phrases has a text of 300 characters; at most 256 can be"),
         ({"phrases": "yes"}, "phrases is 'yes'; give a list of texts"),
         ({"items": [3]}, r"items is \(3,\); give a list of texts"),
         ({"seed": -1}, "seed is -1; environments take whole numbers from 0 on"),

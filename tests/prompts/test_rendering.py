@@ -152,15 +152,23 @@ def installed_greeting(branch):
     return "Hi"
 
 
-@pytest.mark.parametrize(
-    ("value", "message"),
-    [("no_such_module:f", "no_such_module"), ("json:dumps", "@filter")],
-)
-def test_an_installed_filter_that_cannot_be_used_is_named(tmp_path, monkeypatch, value, message):
-    install(tmp_path, "bad-filters", f"[beliefnest.filters]\nbad = {value}\n")
+def test_an_installed_filter_that_is_none_is_named(tmp_path, monkeypatch):
+    install(tmp_path, "bad-filters", "[beliefnest.filters]\nbad = json:dumps\n")
     monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(InputError, match=rf"'bad'.*{message}"):
+    with pytest.raises(InputError, match=r"'bad'.*@filter"):
         filterset.installed_filters(BUILT_IN)
+
+
+def test_an_installed_filter_that_cannot_be_imported_stops_only_templates_that_call_it(
+    tmp_path, monkeypatch
+):
+    install(tmp_path, "bad-filters", "[beliefnest.filters]\nbad = no_such_module:f\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    filters = filterset.installed_filters(BUILT_IN)
+    assert show("{{ branch.state.owner }}", filters) == "sally"
+    message = r"line 1: .*the filter 'bad' of the installed package .*no_such_module"
+    with pytest.raises(TemplateError, match=message):
+        show("{{ branch | bad(1) }}", filters)
 
 
 def test_installed_filters_are_found(tmp_path: Path, monkeypatch):

@@ -23,6 +23,8 @@ if TYPE_CHECKING:  # Importing nests takes long, and many commands need none.
 Printed = Table | Text | str
 """Part of a report: a table, words to wrap, or a line to leave whole."""
 
+_LINES = 20
+"""Greatest number of lines of progress where there is no terminal."""
 _PLAIN_WIDTH = 140
 _PIPE_WIDTH = 280
 _NARROWEST = 20
@@ -151,7 +153,7 @@ def _wanted_width() -> int | None:
 
 @contextmanager
 def progress_on(title: str) -> "Iterator[OnProgress]":
-    """Show progress on stderr: a bar on a terminal, else a line for each report."""
+    """Show progress on stderr: a bar on a terminal, else a line, for every twentieth of a total."""
     # The output of a command in a notebook is no terminal, even if it claims to be one.
     notebook = "JPY_PARENT_PID" in os.environ
     plain = notebook or not sys.stderr.isatty()
@@ -160,8 +162,14 @@ def progress_on(title: str) -> "Iterator[OnProgress]":
     if plain:
         console.width = _width(terminal=False) or _PLAIN_WIDTH
 
+        parts: set[int] = set()
+
         def say(what: str, done: int, total: int) -> None:
             # A total of 0 means that steps are not counted.
+            part = _LINES * done // total if total else -1
+            if part in parts and total > _LINES:
+                return
+            parts.add(part)
             count = f" ({done}/{total})" if total else ""
             console.print(f"{title}: {printable(what)}{count}", highlight=False)
 

@@ -204,6 +204,8 @@ class Calls:
 
 def index_of(value: Any) -> int:
     """Return a whole number as an index; raises IndexError below 0, and TypeError for others."""
+    if isinstance(value, bool | np.bool_):
+        raise TypeError(f"{value} is a truth")
     number = operator.index(value)
     if number < 0:
         raise IndexError(f"{number} is below 0")

@@ -37,6 +37,7 @@ from beliefnest.timeline.journal import FOLLOW, TimelineInfo
 from beliefnest.timeline.run_records import Senses
 from beliefnest.world.paths import BeliefPath, parse_path, path_text, paths_below
 from beliefnest.world.seeds import checked_seed
+from beliefnest.world.texts import fault_of
 from beliefnest.world.values import Position
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.names import check_world
@@ -105,6 +106,8 @@ class EnvironmentOptions:
         for name, texts in (("phrases", self.phrases), ("items", self.items)):
             if isinstance(texts, str) or not all(isinstance(each, str) for each in texts):
                 raise InputError(f"{name} is {texts!r:.100}; give a list of texts")
+        if faults := list(filter(None, map(fault_of, self.phrases))):
+            raise InputError(f"phrases has {faults[0]}")
         counts = ("max_steps", "step_ticks", "timeout_ticks")
         for name in counts:
             number = getattr(self, name)

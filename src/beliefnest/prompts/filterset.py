@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 from typing import Any, Generic, ParamSpec
 
@@ -95,14 +96,23 @@ class FilterSet:
 def installed_filters(built_in: FilterSet) -> FilterSet:
     """Return the built-in filters and those of installed packages.
 
+    A filter that cannot be imported is one that raises InputError when a template calls it.
+
     Raises:
-        InputError: An installed filter cannot be loaded, or its name is in use.
+        InputError: An installed filter is none, or its name is in use.
     """
     filters = built_in
     for entry in installed_entries(FILTER_GROUP):
-        added = load(entry, "filter")
+        try:
+            added = load(entry, "filter")
+        except InputError as fault:
+            added = PromptFilter(entry.name, partial(_refuse, str(fault)))
         try:
             filters = filters.extended([added])
         except InputError as error:
             raise InputError(f"{told_entry(entry, 'filter')} cannot be used: {error}") from error
     return filters
+
+
+def _refuse(fault: str, *_args: object, **_options: object) -> str:
+    raise InputError(fault)

@@ -111,7 +111,7 @@ def resolve_policy(
             name, _GROUP, "policy", "act", "(view), which returns a program"
         )
         return policy
-    named = (*POLICIES, *installed_names(_GROUP))
+    named = (*POLICIES, *(each for each in installed_names(_GROUP) if each not in _KINDS))
     kinds = {form.partition(":")[0] for form in named} - {"MODULE", "FILE.py"}
     near = difflib.get_close_matches(kind, sorted(kinds), n=1)  # A kind is nearest to itself.
     forms = [form for form in named if form.partition(":")[0] in near] or named
