@@ -140,8 +140,8 @@ def load(entry: EntryPoint, what: str) -> Any:
     try:
         return entry.load()
     except Exception as error:  # Code of users may raise anything.
-        told = f"{type(error).__name__}: {error}"
-        raise InputError(f"{told_entry(entry, what)} cannot be imported: {told}") from error
+        fault = f"{type(error).__name__}: {error}"
+        raise InputError(f"{told_entry(entry, what)} cannot be imported: {fault}") from error
 
 
 @functools.cache
@@ -177,8 +177,8 @@ def text_of_object(text: str) -> str:
 def _hint(name: str, module: ModuleType) -> str:
     """Return a hint to the names that a module defines."""
     own = [
-        known
-        for known, value in vars(module).items()
+        defined
+        for defined, value in vars(module).items()
         if callable(value) and getattr(value, "__module__", None) == module.__name__
     ]
     close = difflib.get_close_matches(name, own, n=1)
@@ -214,8 +214,8 @@ def _module(place: str, what: str) -> ModuleType:
         hint = beside if place.endswith(_SUFFIX) else ""
         raise InputError(f"{place} of a {what} cannot be imported: {error}{hint}") from error
     except (Exception, SystemExit) as error:  # Code of users may raise anything.
-        told = f"{type(error).__name__}: {error}"
-        raise InputError(f"{place} of a {what} cannot be imported: {told}") from error
+        fault = f"{type(error).__name__}: {error}"
+        raise InputError(f"{place} of a {what} cannot be imported: {fault}") from error
 
 
 def _of_file(file: Path) -> ModuleType:

@@ -145,8 +145,8 @@ def _holdings(snapshot: Snapshot) -> tuple[Any, Any]:
     return dict(snapshot.containers), {name: dict(agent.inventory) for name, agent in agents}
 
 
-def _same(found: object, wanted: object, what: str) -> None:
-    assert found == wanted, f"{what}: {found!r}, but {wanted!r} is right"
+def _same(actual: object, wanted: object, what: str) -> None:
+    assert actual == wanted, f"{what}: {actual!r}, but {wanted!r} is right"
 
 
 def _is_filled(world: World, body: Body, frames: list[Frame]) -> None:
@@ -167,8 +167,8 @@ def _passes_time(world: World, body: Body, frames: list[Frame]) -> None:
 
 def _tells_acts(world: World, body: Body, frames: list[Frame]) -> None:
     _act(body)
-    told = [event for frame in frames for event in frame.events]
-    deeds = [(e.kind, e.actor, dict(e.detail)) for e in told if e.kind not in _ON_THE_WAY]
+    events = [event for frame in frames for event in frame.events]
+    deeds = [(e.kind, e.actor, dict(e.detail)) for e in events if e.kind not in _ON_THE_WAY]
     _same(deeds, _DEEDS, "events of three acts")
     ticks = [frame.tick for frame in frames]
     _same(ticks, sorted(set(ticks)), "ticks of frames")

@@ -3,15 +3,26 @@
 import ast
 import re
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 TOP = Path(__file__).parents[2]
 SOURCES = TOP / "src" / "beliefnest"
 
 
-def types_of(module):
+@cache
+def trees():
+    """Return the syntax trees of all modules, by path."""
+    modules = (each for each in SOURCES.rglob("*.py") if "node_modules" not in each.parts)
+    return {
+        str(module.relative_to(SOURCES)): ast.parse(module.read_text(encoding="utf-8"))
+        for module in modules
+    }
+
+
+def types_of(tree):
     """Yield the names of the public types that a module defines."""
-    for node in ast.parse(module.read_text(encoding="utf-8")).body:
+    for node in tree.body:
         match node:
             case ast.ClassDef(name=name):
                 yield name
@@ -24,10 +35,9 @@ def types_of(module):
 def homes_of_types():
     """Return the files that define each type."""
     homes = defaultdict(list)
-    for module in SOURCES.rglob("*.py"):
-        if "node_modules" not in module.parts:
-            for name in types_of(module):
-                homes[name].append(str(module.relative_to(SOURCES)))
+    for module, tree in trees().items():
+        for name in types_of(tree):
+            homes[name].append(module)
     return homes
 
 
@@ -54,3 +64,23 @@ def test_only_what_users_import_lists_its_names():
         and re.search(r"^__all__ = \[", module.read_text(encoding="utf-8"), re.MULTILINE)
     }
     assert listing <= {"inspect/registry.py", "testing.py"}
+
+
+def named_by_participles():
+    """Yield where variables and parameters are named by participles that say nothing of a value."""
+    participles = {"found", "told", "held", "known", "given"}
+    for module, tree in trees().items():
+        classes = (part.body for part in ast.walk(tree) if isinstance(part, ast.ClassDef))
+        fields = {
+            each.target for body in classes for each in body if isinstance(each, ast.AnnAssign)
+        }
+        for node in ast.walk(tree):
+            match node:
+                case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name) if (
+                    name in participles and node not in fields
+                ):
+                    yield f"{module}:{node.lineno}: {name}"
+
+
+def test_nouns_say_what_variables_are():
+    assert list(named_by_participles()) == []

@@ -184,11 +184,11 @@ def cut_grids(shape_codes: Codes, reaches: Reaches, grids: Sequence[Terrain]) ->
         reaches: Sides at which the shape of each code reaches out of its cell.
         grids: The grids.
     """
-    known: dict[bytes, int] = {}
+    numbers: dict[bytes, int] = {}
     kept: list[bytes] = []
     rows: list[Ints] = []
     for grid in grids:
-        rows.append(_cut(shape_codes, reaches, grid, known, kept))
+        rows.append(_cut(shape_codes, reaches, grid, numbers, kept))
     size = VOLUME * np.dtype(np.int16).itemsize
     both = np.frombuffer(b"".join(kept), dtype=np.uint8).reshape(len(kept), 2 * size)
     blocks, codes = both[:, :size].copy(), both[:, size:].copy()
@@ -196,13 +196,13 @@ def cut_grids(shape_codes: Codes, reaches: Reaches, grids: Sequence[Terrain]) ->
 
 
 def _cut(
-    shape_codes: Codes, reaches: Reaches, grid: Terrain, known: dict[bytes, int], kept: list[bytes]
+    shape_codes: Codes, reaches: Reaches, grid: Terrain, ids: dict[bytes, int], kept: list[bytes]
 ) -> Ints:
     """Return the numbers of the chunks of a grid, and add new ones to `known` and `kept`."""
 
     def number_of(blocks: States, codes: Codes) -> int:
         content = blocks.tobytes() + codes.tobytes()
-        number = known.setdefault(content, len(kept))
+        number = ids.setdefault(content, len(kept))
         if number == len(kept):
             kept.append(content)
         return number
@@ -239,11 +239,11 @@ def _with_neighbours(
     wide[tuple(slice(a - s + 1, b - s + 3) for a, b, s in zip(low, high, start, strict=True))] = (
         code_grid(near, shape_codes, reaches)
     )
-    held = np.full([SIDE + 2] * 3, UNKNOWN, dtype=np.int16)
-    held[tuple(slice(a - s + 1, b - s + 1) for a, b, s in zip(low, high, start, strict=True))] = (
-        near
-    )
-    return held[1:-1, 1:-1, 1:-1], wide[2:-2, 2:-2, 2:-2]
+    cells_around = np.full([SIDE + 2] * 3, UNKNOWN, dtype=np.int16)
+    cells_around[
+        tuple(slice(a - s + 1, b - s + 1) for a, b, s in zip(low, high, start, strict=True))
+    ] = near
+    return cells_around[1:-1, 1:-1, 1:-1], wide[2:-2, 2:-2, 2:-2]
 
 
 def _longer(array: npt.NDArray[Any], used: int, size: int) -> npt.NDArray[Any]:

@@ -39,8 +39,8 @@ def cells_between(box: Box, low: Position, high: Position) -> list[int]:
         sparse=True,
     )
     _, ny, nz = box.shape
-    found: list[int] = ((i * ny + j) * nz + k).ravel().tolist()
-    return found
+    cells_on_way: list[int] = ((i * ny + j) * nz + k).ravel().tolist()
+    return cells_on_way
 
 
 class Columns:

@@ -173,10 +173,10 @@ class BeliefContext:
 
     def note_signs(self, cells: Iterable[int]) -> None:
         """Add cells of signs with text. They are tracked too if claims can change beliefs."""
-        found = dict.fromkeys(cells)
-        self._sign_cells.update(found)
+        new_cells = dict.fromkeys(cells)
+        self._sign_cells.update(new_cells)
         if self.options.testimony != "none":
-            self.track(found)
+            self.track(new_cells)
 
     def number(self, block: Block, claims: tuple[Claim, ...] = ()) -> int:
         """Return the number of a block in arrays: its state, or a higher number for a written sign.

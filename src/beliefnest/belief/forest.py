@@ -302,8 +302,8 @@ class Forest:
 
     def read_by(self, reader: StateReader) -> None:
         """Call `reader.keep` before the forest changes the next time."""
-        known = ref(reader, self._forget)
-        self._readers[id(known)] = known
+        reference = ref(reader, self._forget)
+        self._readers[id(reference)] = reference
 
     def adopt(self, other: "Forest", paths: Sequence[BeliefPath]) -> None:
         """Copy nodes of another forest of this timeline that has folded the same entries."""
@@ -346,8 +346,8 @@ class Forest:
 
     def _let_read(self) -> None:
         readers, self._readers = self._readers, {}
-        for known in readers.values():
-            reader = known()
+        for reference in readers.values():
+            reader = reference()
             if reader is not None:
                 reader.keep()
 
@@ -539,8 +539,8 @@ def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence
     rows: dict[int, dict[int, list[Sequence[int]]]] = {}
     for row in changes.rows[: changes.used[0]].tolist():
         rows.setdefault(first + row[0], {}).setdefault(row[1], []).append(row)
-    for found in rows.values():
-        for node, each in found.items():
+    for rows_of_node in rows.values():
+        for node, each in rows_of_node.items():
             if node > 0:
                 # The order of chunks must not show: a node's rows are in the order of cells.
                 each.sort(key=lambda row: row[2])

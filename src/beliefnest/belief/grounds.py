@@ -153,5 +153,5 @@ def seen_text(source: Source | None, teller: str, ticks: int) -> str:
     """Return the same with `seen` before the age of a memory that was perceived."""
     if source is None:
         return "seen now"
-    told = told_text(source, teller, ticks)
-    return f"seen {told or 'now'}" if source in (Source.SEEN, Source.WITNESSED) else told
+    text = told_text(source, teller, ticks)
+    return f"seen {text or 'now'}" if source in (Source.SEEN, Source.WITNESSED) else text

@@ -194,9 +194,9 @@ class Holdings:
                     content if left else replace(content, basis=basis, in_sight=False, by_act=False)
                 )
                 self.containers[cell] = replace(rest, items=left)
-        for agent, held in list(self.inventories.items()):
-            if item in held and Whereabouts("agent", agent) not in kept:
-                self.inventories[agent] = {name: n for name, n in held.items() if name != item}
+        for agent, inventory in list(self.inventories.items()):
+            if item in inventory and Whereabouts("agent", agent) not in kept:
+                self.inventories[agent] = {name: n for name, n in inventory.items() if name != item}
         for number, lying in list(self.items.items()):
             if lying.name == item and Whereabouts("floor", number) not in kept:
                 del self.items[number]
@@ -219,8 +219,8 @@ class Holdings:
             ),
             *(
                 Whereabouts("agent", agent)
-                for agent, held in self.inventories.items()
-                if item in held
+                for agent, inventory in self.inventories.items()
+                if item in inventory
             ),
             *(
                 Whereabouts("floor", number)
@@ -257,11 +257,11 @@ def replaced_block(
         new: Name of the container block held now; None: the block is no container.
         basis: Ground of the new block.
     """
-    known = holdings.containers.get(cell)
-    if known is not None and (new is None or old not in (None, new)):
+    content = holdings.containers.get(cell)
+    if content is not None and (new is None or old not in (None, new)):
         holdings.drop(cell)
-        known = None
-    if new is not None and known is None:
+        content = None
+    if new is not None and content is None:
         holdings.containers[cell] = Content({}, complete=False, basis=basis)
 
 

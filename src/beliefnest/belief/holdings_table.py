@@ -127,11 +127,11 @@ class HoldingsTable:
     def inventory(self, node: int, agent: int) -> tuple[Items, bool]:
         """Return believed possessions of an agent, and True if they are known to be complete."""
         node = self._knowing(node, agent)
-        known = self._holdings[node].inventories.get(agent)
+        inventory = self._holdings[node].inventories.get(agent)
         if node == 0:
             pose, details = self._table.pose(0, agent), self._table.details_of(0, agent)
-            if details is not None and (known is None or self._table.poses.is_recorded(pose)):
-                return details.inventory, known is None
+            if details is not None and (inventory is None or self._table.poses.is_recorded(pose)):
+                return details.inventory, inventory is None
         return self._holdings[node].inventories.get(agent, {}), False
 
     def vitals(self, node: int, agent: int) -> Vitals:
@@ -188,16 +188,16 @@ class HoldingsTable:
             which: bool (N,), nodes to update.
         """
         for node in [node for node in self._shown_by_acts if which[node]]:
-            held = self._holdings[node].containers
-            for cell in self._shown_by_acts.pop(node) & held.keys():
-                held[cell] = replace(held[cell], by_act=False)
+            containers = self._holdings[node].containers
+            for cell in self._shown_by_acts.pop(node) & containers.keys():
+                containers[cell] = replace(containers[cell], by_act=False)
 
     def _lose_sight(self, node: int, seen: Set[int], last: int) -> None:
         """Date contents that were in sight and are not among those `seen` now to tick `last`."""
-        held, in_sight = self._holdings[node].containers, self._in_sight.get(node, set())
-        for cell in (in_sight - seen) & held.keys():
-            if held[cell].in_sight:
-                held[cell] = replace(held[cell].at(last), in_sight=False)
+        containers, in_sight = self._holdings[node].containers, self._in_sight.get(node, set())
+        for cell in (in_sight - seen) & containers.keys():
+            if containers[cell].in_sight:
+                containers[cell] = replace(containers[cell].at(last), in_sight=False)
         in_sight &= seen
         if not in_sight:
             self._in_sight.pop(node, None)
@@ -284,14 +284,14 @@ class HoldingsTable:
             after: The same for the block that is there now.
             basis: Ground of the new block.
         """
-        held = self._holdings[node]
+        holdings = self._holdings[node]
         for cell in {before, after} if before != after else ():
             if cell is None or self._table.block(node, cell) >= 0:
                 continue
             if cell == before:
-                held.drop(cell)
-            elif cell not in held.containers:
-                held.containers[cell] = Content({}, complete=False, basis=basis)
+                holdings.drop(cell)
+            elif cell not in holdings.containers:
+                holdings.containers[cell] = Content({}, complete=False, basis=basis)
                 self.doubt(node, cell)
 
     def _looking(self, acts: Mapping[int, list[Event]], which: npt.NDArray[np.bool_]) -> set[int]:
@@ -334,9 +334,9 @@ class HoldingsTable:
         """
         holdings, owner = self._holdings[node], self._context.agents[self._table.owner(node)]
         parent = self._table.parent(node)
-        box, known = self._context.box, self._holdings[parent].containers
+        box, containers = self._context.box, self._holdings[parent].containers
         touched = [(cell_of(box, a.detail["position"]), a) for a in acts if a.kind in AT_CONTAINERS]
-        own = {cell for cell, act in touched if act.actor == owner and cell in known}
+        own = {cell for cell, act in touched if act.actor == owner and cell in containers}
         for cell, act in touched:
             if cell not in own | into and not self.sees_no_container(node, cell):
                 witness(holdings, cell, act, tick)
@@ -509,8 +509,8 @@ class HoldingsTable:
             state = self._table.block(node, cell_of(box, place)) if place in box else UNKNOWN
             return state if shows[state] else UNKNOWN
 
-        found = {left_half_of(registry, state_at, place_of(box, cell)): cell for cell in cells}
-        return {cell_of(box, left): cell for left, cell in found.items() if left is not None}
+        lefts = {left_half_of(registry, state_at, place_of(box, cell)): cell for cell in cells}
+        return {cell_of(box, left): cell for left, cell in lefts.items() if left is not None}
 
     def _learn(self, node: int, cell: int, content: Content) -> None:
         """Set the content of a container to one that the owner finds when it looks in."""
@@ -541,14 +541,14 @@ class HoldingsTable:
 
     def _see_items(self, node: int) -> None:
         """Take over dropped items in sight. Forget items whose believed place is seen empty."""
-        lying, known = self._holdings[self._table.parent(node)].items, self._holdings[node].items
-        if not known and not lying:
+        lying, items = self._holdings[self._table.parent(node)].items, self._holdings[node].items
+        if not items and not lying:
             return
         seen = {number: item for number, item in lying.items() if self._sees_item(node, item)}
-        for number in [n for n in known if n not in seen]:
-            if self._sees_item(node, known[number]):
-                del known[number]
-        known.update(seen)
+        for number in [n for n in items if n not in seen]:
+            if self._sees_item(node, items[number]):
+                del items[number]
+        items.update(seen)
 
     def _sees_item(self, node: int, item: DroppedItem) -> bool:
         return self._table.sees_point(node, middle_of(item))

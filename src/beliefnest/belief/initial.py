@@ -50,8 +50,8 @@ class Beginning:
     def grids(self) -> tuple[Terrain, Terrain]:
         """The numbers of all blocks of the world, and of those that everybody knows."""
         context, world = self._context, self._world
-        known = _numbers_of(context, {name for name in self._static if isinstance(name, str)})
-        prior = world.mapped(lambda numbers: np.where(known[numbers], numbers, UNKNOWN)).draft()
+        is_named = _numbers_of(context, {name for name in self._static if isinstance(name, str)})
+        prior = world.mapped(lambda numbers: np.where(is_named[numbers], numbers, UNKNOWN)).draft()
         for place in self._static:
             if not isinstance(place, str):
                 prior[context.box.index(place)] = world[context.box.index(place)]
@@ -111,13 +111,13 @@ def initial_forest(
 
 def _numbers_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.bool_]:
     """Return by number of a block whether its block has one of some names."""
-    known = np.zeros(context.holds.size, dtype=np.bool_)
+    is_named = np.zeros(context.holds.size, dtype=np.bool_)
     for name in names:
         ids = context.registry.state_ids(name)
-        known[ids.start : ids.stop] = True
+        is_named[ids.start : ids.stop] = True
     for number, sign in context.signs.items():
-        known[number] = known[sign.state]
-    return known
+        is_named[number] = is_named[sign.state]
+    return is_named
 
 
 def _numbers(context: BeliefContext, snapshot: Snapshot) -> Terrain:
@@ -182,8 +182,8 @@ def _add_prior(
         table.set_rows(node, rows[1])
         if mine.blocks:
             table.link()
-        known = {cell_of(context.box, at): block for at, block in mine.blocks.items()}
-        table.change(node, {cell: context.number(block) for cell, block in known.items()})
+        blocks_before = {cell_of(context.box, at): block for at, block in mine.blocks.items()}
+        table.change(node, {cell: context.number(block) for cell, block in blocks_before.items()})
     for name, position in mine.agents.items():
         pose = table.poses.add_pose(position, 0.0, 0.0)
         table.set_pose(node, context.numbers[name], pose, tick, current=False)

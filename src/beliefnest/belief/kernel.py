@@ -120,10 +120,10 @@ def _mark(space: Space, grids: Grids, node: int, place: int) -> None:
 
     Clear the bit otherwise, unless it stands for a chunk.
     """
-    held = _held(space, grids, whole(grids.parent[node]), place)
+    block = _held(space, grids, whole(grids.parent[node]), place)
     number = chunk_at(space.chunks, place)
     word, bit = number // _WORD, np.uint64(1) << np.uint64(number % _WORD)
-    if held != UNKNOWN and held != _held(space, grids, node, place):
+    if block != UNKNOWN and block != _held(space, grids, node, place):
         grids.pending[node, word] |= bit
         grids.fresh[node] = True
     elif space.chunks is None:
@@ -258,9 +258,9 @@ def _apply_entry(
         looks.pose[0, who] = pose
         looks.equipment[0, who] = pose
     for who in range(looks.pose.shape[1]):
-        known = looks.pose[0, who] != UNKNOWN
-        looks.current[0, who] = known
-        if known:
+        is_known = looks.pose[0, who] != UNKNOWN
+        looks.current[0, who] = is_known
+        if is_known:
             looks.seen_at[0, who] = facts.tick[entry]
     for row in range(facts.block_at[entry], facts.block_at[entry + 1]):
         cell, state = whole(facts.block_cell[row]), whole(facts.block_state[row])
@@ -268,9 +268,9 @@ def _apply_entry(
             space, grids, bases, changes, entry, whole(facts.tick[entry]), whole(0), cell, state
         )
     for spot in range(len(bases.tracked)):
-        known = _held(space, grids, whole(0), whole(bases.places[spot])) != UNKNOWN
-        bases.basis_current[0, spot] = known
-        if known:
+        is_known = _held(space, grids, whole(0), whole(bases.places[spot])) != UNKNOWN
+        bases.basis_current[0, spot] = is_known
+        if is_known:
             bases.basis_at[0, spot] = facts.tick[entry]
             bases.basis_source[0, spot] = SOURCE_SEEN
 
@@ -307,8 +307,8 @@ def _propagate_bases(
             cell = grid_cell(space, whole(bases.tracked[spot]))
             bases.watched[node, spot] = sees_cell(space, _scene(space, grids, parent), eye, cell)
         bases.basis_current[node, spot] = False
-        held = _held(space, grids, parent, whole(bases.places[spot]))
-        if bases.watched[node, spot] and held != UNKNOWN:
+        block = _held(space, grids, parent, whole(bases.places[spot]))
+        if bases.watched[node, spot] and block != UNKNOWN:
             bases.basis_at[node, spot] = bases.basis_at[parent, spot]
             bases.basis_source[node, spot] = _handed_source(bases, parent, spot)
             bases.basis_current[node, spot] = bases.basis_current[parent, spot]

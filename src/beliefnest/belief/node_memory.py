@@ -92,14 +92,14 @@ def node_bytes(context: BeliefContext) -> int:
 
 
 def check_room(
-    context: BeliefContext, nodes: int, told: str = "", advice: str = "ask for fewer paths"
+    context: BeliefContext, nodes: int, which: str = "", advice: str = "ask for fewer paths"
 ) -> None:
     """Raise InputError if the memory of this process has no room for a number of nodes.
 
     Args:
         context: The part that all nodes of the nest share.
         nodes: Number of nodes, the real world included.
-        told: Words about where the number comes from, for the message.
+        which: Words about where the number comes from, for the message.
         advice: Words about how to need fewer nodes, for the message.
     """
     limit, each = context.memory, node_bytes(context)
@@ -109,7 +109,7 @@ def check_room(
     if context.weighs:
         advice += ", another 'testimony' than 'informed'"
     raise InputError(
-        f"{nodes:,} simulators{told} need at least {_megabytes(nodes * each)}, "
+        f"{nodes:,} simulators{which} need at least {_megabytes(nodes * each)}, "
         f"{-(-each // 1000):,} kB each, for {len(context.agents)} agents and a box of {x} x {y} x "
         f"{z} blocks. This process may use {_megabytes(limit.bytes)}, {limit.source}: {advice}, "
         "or take fewer agents or a smaller box"

@@ -90,8 +90,8 @@ class NodeTable:
         self.index: dict[BeliefPath, int] = {}
         self.count = 0
         self._linked = 1
-        known = set(context.tracked)
-        others = [cell for cell in extra if cell not in known]
+        tracked_cells = set(context.tracked)
+        others = [cell for cell in extra if cell not in tracked_cells]
         tracked = self._tracked = np.array([*context.tracked, *others], dtype=np.int32)
         # Not initialized: `_grow` fills the row of each node that is added.
         self._rows: dict[str, NodeRow] = {
@@ -183,9 +183,9 @@ class NodeTable:
             if name == "rows":
                 row[node] = self._copied_rows(other, other._rows[name][source])
             elif name in _BY_SPOT:
-                known = other._rows[name][source]
-                none = np.full((1, *known.shape[1:]), _filler(known), dtype=known.dtype)
-                row[node] = np.concatenate([known, none])[theirs]
+                values = other._rows[name][source]
+                none = np.full((1, *values.shape[1:]), _filler(values), dtype=values.dtype)
+                row[node] = np.concatenate([values, none])[theirs]
             else:
                 row[node] = other._rows[name][source]
         for name in ("eye", "seen_geometry", "tried"):
@@ -241,13 +241,13 @@ class NodeTable:
             return rows
         if self._copied is None or self._copied[0] is not other:
             self._copied = (other, np.full(len(other.pool.shares), UNKNOWN, dtype=np.int32))
-        known = self._copied[1]
-        new = np.unique(rows[known[rows] < 0])
-        known[new] = self.pool.add(other.pool.blocks[new], other.pool.codes[new])
+        copies = self._copied[1]
+        new = np.unique(rows[copies[rows] < 0])
+        copies[new] = self.pool.add(other.pool.blocks[new], other.pool.codes[new])
         self.pool.leave(np.full(len(rows), NOTHING, np.int32))
-        self.pool.use(known[rows])
+        self.pool.use(copies[rows])
         self._nodes = None
-        return known[rows]
+        return copies[rows]
 
     def path(self, node: int) -> BeliefPath:
         """Return the path of a node."""
@@ -276,20 +276,20 @@ class NodeTable:
     def _compare_with_parent(self, node: int) -> None:
         """Compute all pending bits of a node, and the number of cells with another shape."""
         grids = self._rows["rows" if self.pool is not None else "blocks"]
-        own, held = grids[node], grids[self.parent(node)]
-        differs = np.flatnonzero(held != own)
+        own, above = grids[node], grids[self.parent(node)]
+        differs = np.flatnonzero(above != own)
         shapes = self.context.space.codes
-        own, held = own[differs], held[differs]
+        own, above = own[differs], above[differs]
         if self.pool is not None:
             # A pair of chunks is compared once, wherever it is.
             size = len(self.pool.blocks)
-            pairs, times = np.unique(own.astype(np.int64) * size + held, return_counts=True)
-            own, held = self.pool.blocks[pairs // size], self.pool.blocks[pairs % size]
+            pairs, times = np.unique(own.astype(np.int64) * size + above, return_counts=True)
+            own, above = self.pool.blocks[pairs // size], self.pool.blocks[pairs % size]
             is_pending = np.ones(len(differs), dtype=np.bool_)
-            unlike = np.count_nonzero(shapes[own] != shapes[held], axis=1) @ times
+            unlike = np.count_nonzero(shapes[own] != shapes[above], axis=1) @ times
         else:
-            is_pending = held != UNKNOWN
-            unlike = np.count_nonzero(shapes[own] != shapes[held])
+            is_pending = above != UNKNOWN
+            unlike = np.count_nonzero(shapes[own] != shapes[above])
         pending = np.zeros(self._rows["pending"].shape[1] * 64, dtype=np.bool_)
         pending[differs] = is_pending
         self._rows["unlike"][node] = unlike
@@ -365,10 +365,10 @@ class NodeTable:
 
     def set_known_bases(self, node: int, basis: Basis) -> None:
         """Set one basis for all tracked cells whose block a node knows."""
-        known = self.blocks_at(node, self._tracked) >= 0
-        self._rows["basis_at"][node][known] = basis.observed_at
-        self._rows["basis_source"][node][known] = self.context.basis_code(basis)
-        self._rows["basis_current"][node][known] = node == 0
+        is_known = self.blocks_at(node, self._tracked) >= 0
+        self._rows["basis_at"][node][is_known] = basis.observed_at
+        self._rows["basis_source"][node][is_known] = self.context.basis_code(basis)
+        self._rows["basis_current"][node][is_known] = node == 0
 
     def bases(self, node: int, cells: Sequence[int], tick: int) -> dict[int, Basis | None]:
         """Return the bases of tracked cells in a node at a tick; None where a block is unknown."""
@@ -377,10 +377,10 @@ class NodeTable:
         ticks = np.where(current, tick, self._rows["basis_at"][node]).tolist()
         codes = self._rows["basis_source"][node].tolist()
         basis = self.context.basis
-        known = (self.blocks_at(node, np.array(cells, dtype=np.int64)) >= 0).tolist()
+        are_known = (self.blocks_at(node, np.array(cells, dtype=np.int64)) >= 0).tolist()
         return {
             cell: basis(ticks[spots[cell]], codes[spots[cell]]) if is_known else None
-            for cell, is_known in zip(cells, known, strict=True)
+            for cell, is_known in zip(cells, are_known, strict=True)
         }
 
     def change(self, node: int, blocks: Mapping[int, int]) -> None:
@@ -423,8 +423,8 @@ class NodeTable:
 
     def track(self) -> None:
         """Add columns for the cells that the context has begun to track since the last call."""
-        known = set(self._tracked.tolist())
-        new = [cell for cell in self.context.tracked if cell not in known]
+        tracked = set(self._tracked.tolist())
+        new = [cell for cell in self.context.tracked if cell not in tracked]
         if not new:
             return
         self._tracked = np.array([*self._tracked.tolist(), *new], dtype=np.int32)
@@ -467,9 +467,9 @@ class NodeTable:
         added = self.pool.add(numbers.reshape(-1, VOLUME), codes)
         rows = np.frombuffer(saved.rows, dtype=np.int32)
         # Number -1 indexes the last place, which is not used.
-        found = np.append(added, UNKNOWN)[rows]
+        restored = np.append(added, UNKNOWN)[rows]
         parents = self._rows["rows"][max(self.parent(node), 0)]
-        self.set_rows(node, np.where(rows < 0, parents, found).astype(np.int32))
+        self.set_rows(node, np.where(rows < 0, parents, restored).astype(np.int32))
 
     def restore(
         self, saved: SavedNode, tracked: npt.NDArray[np.int32], signs: Sequence[SavedWriting]
@@ -503,8 +503,8 @@ class NodeTable:
 
     def spot(self, cell: int) -> int:
         """Return the index of a cell among the tracked ones; -1: it is not tracked."""
-        found = np.flatnonzero(self._tracked == cell)
-        return int(found[0]) if len(found) else UNKNOWN
+        spots = np.flatnonzero(self._tracked == cell)
+        return int(spots[0]) if len(spots) else UNKNOWN
 
     def parent(self, node: int) -> int:
         """Return the number of the parent of a node; -1 for node 0."""
@@ -525,12 +525,12 @@ class NodeTable:
     ) -> npt.NDArray[np.int16]:
         """Return the numbers of blocks of one or several nodes at one or several cells."""
         places = self.places(np.asarray(cells))
-        found: npt.NDArray[np.int16]
+        blocks: npt.NDArray[np.int16]
         if self.pool is None:
-            found = self._rows["blocks"][nodes, places]
-            return found
-        found = self.pool.blocks[self._rows["rows"][nodes, places // VOLUME], places % VOLUME]
-        return found
+            blocks = self._rows["blocks"][nodes, places]
+            return blocks
+        blocks = self.pool.blocks[self._rows["rows"][nodes, places // VOLUME], places % VOLUME]
+        return blocks
 
     def places(self, cells: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.integer[Any]]:
         """Return the places of cells in the blocks of a node; see `perception.chunks`."""
@@ -655,8 +655,8 @@ class NodeTable:
                 node, [cell for cell in left if (node, cell) not in self.edited_cells]
             )
             node = self.parent(node)
-        known = np.array([*left], dtype=np.int64)
-        return set(known[self.blocks_at(0, known) >= 0].tolist())
+        places = np.array([*left], dtype=np.int64)
+        return set(places[self.blocks_at(0, places) >= 0].tolist())
 
     def below(self, node: int) -> npt.NDArray[np.bool_]:
         """Return a mask of the nodes below a node."""

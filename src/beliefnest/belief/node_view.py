@@ -113,8 +113,8 @@ class NodeView:
     def signs(self) -> Mapping[Position, str]:
         """The texts of known signs, in order of position; empty for a blank sign."""
         x, y, z = self.box.low
-        found = self.terrain.find(sign_states(self._forest.context.registry)).tolist()
-        places = ((x + i, y + j, z + k) for i, j, k in found)
+        offsets = self.terrain.find(sign_states(self._forest.context.registry)).tolist()
+        places = ((x + i, y + j, z + k) for i, j, k in offsets)
         return {place: self.texts.get(place, "") for place in places}
 
     @Part
@@ -139,13 +139,13 @@ class NodeView:
     def containers(self) -> Mapping[Position, ContainerBelief]:
         """The known contents, in order of position; found at either half of a double chest."""
         forest = self._forest
-        found = {}
+        beliefs = {}
         for cell in sorted(forest.holdings.of(self._node).containers):
             content = forest.holdings.content(self._node, cell).at(self.tick)
-            found[place_of(self.box, cell)] = ContainerBelief(
+            beliefs[place_of(self.box, cell)] = ContainerBelief(
                 content.items, content.complete, content.basis, content.current
             )
-        return ByEitherHalf(found, self.container_at)
+        return ByEitherHalf(beliefs, self.container_at)
 
     def container_at(self, place: Position) -> Position:
         """Return the position of the container to which a block belongs, as far as is believed."""

@@ -92,8 +92,8 @@ class PoseTable:
     def add(self, name: str, agent: AgentState) -> int:
         """Add a pose of an agent that the timeline itself recorded, and return its id."""
         last = self._last.get(name, 0)
-        known = self._table[last]
-        if known is None or not known.are_of(agent):
+        latest = self._table[last]
+        if latest is None or not latest.are_of(agent):
             facts = (agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food)
             self._table.append(PoseDetails(*facts))
             last = self._last[name] = len(self._table) - 1

@@ -11,9 +11,9 @@ def merged_belief(initial: Sequence[InitialBelief], node: BeliefPath) -> Initial
 
     Where two speak of the same element, the more precise path counts; see `InitialBelief.path`.
     """
-    known = [belief for belief in initial if _is_about(belief.path, node)]
+    beliefs = [belief for belief in initial if _is_about(belief.path, node)]
     merged = InitialBelief(node)
-    for belief in sorted(known, key=_precision):
+    for belief in sorted(beliefs, key=_precision):
         merged = InitialBelief(
             node,
             {**merged.containers, **belief.containers},

@@ -145,10 +145,10 @@ class EntryTestimony:
         which = which[which > 0]
         signs = [number for sign in sorted(self._read) for number in self._read[sign]]
         for number in [*range(self._utterances), *signs]:
-            told = self._told[number]
-            self._codes[number][which] = self._weighed(number, which, told)
+            statement = self._told[number]
+            self._codes[number][which] = self._weighed(number, which, statement)
             believed = _IS_BELIEVED[self._codes[number][which]]
-            self._believe(which[believed], told)
+            self._believe(which[believed], statement)
         for (cell, sign, writer), numbers in self._read.items():
             self._keep_verdicts(which, (cell, text_of(self._context.block(sign))), writer, numbers)
 
@@ -158,9 +158,9 @@ class EntryTestimony:
         The key is the number of the event in the entry and of the claim in the event.
         """
         return {
-            told.key: [_VERDICTS[code] for code in self._codes[number].tolist()]
-            for number, told in enumerate(self._told)
-            if told.key is not None
+            statement.key: [_VERDICTS[code] for code in self._codes[number].tolist()]
+            for number, statement in enumerate(self._told)
+            if statement.key is not None
         }
 
     def _nothing_heard(self) -> npt.NDArray[np.int8]:
@@ -212,18 +212,18 @@ class EntryTestimony:
             if any(verdict is not Verdict.NOT_HEARD for verdict in verdicts):
                 self._holdings.of(node).told[sign] = SignTold(self._tick, speaker, verdicts)
 
-    def _weighed(self, number: int, which: Numbers, told: _Told) -> npt.NDArray[np.int8]:
+    def _weighed(self, number: int, which: Numbers, statement: _Told) -> npt.NDArray[np.int8]:
         """Return the codes of some nodes' verdicts on a claim (semantics, 8.0, 8.1 and 8.3).
 
         Conditions are listed in order of precedence; the first that holds decides. Under
         `informed`, 1a is asked before 0: both keep the belief, and 1a is the more precise reason.
         """
         options, nodes = self._context.options, self._table.nodes()
-        claim, speaker = told.claim, told.speaker
+        claim, speaker = statement.claim, statement.speaker
         subject = self._context.numbers.get(claim.agent or "", UNKNOWN)
         owner, parent = nodes.agent[which], nodes.parent[which]
         is_speaker = owner == speaker
-        heard = np.where(is_speaker, told.perceived[parent], told.perceived[which])
+        heard = np.where(is_speaker, statement.perceived[parent], statement.perceived[which])
         sees_matter, sees_claimed = self._sees(which, claim, nodes)
         beaten = [(sees_matter | sees_claimed, Verdict.SEES_OTHERWISE)]
         if options.testimony == "accept":
@@ -252,9 +252,9 @@ class EntryTestimony:
         """Return the conditions under `informed` in the order in which they decide."""
         options = self._context.options
         is_speaker = nodes.agent[which] == speaker
-        known, sees_known, missed = self._known(which, speaker, claim, nodes)
+        is_known, sees_known, missed = self._known(which, speaker, claim, nodes)
         # Condition 1b holds at once if the writer of a sign is unknown (8.5).
-        is_short = known & (missed <= options.grace) & (speaker != NOBODY)
+        is_short = is_known & (missed <= options.grace) & (speaker != NOBODY)
         up = self._codes[number][nodes.parent[which]] == _CODES[Verdict.TAKEN_UP]
         others = ~is_speaker
         return [
@@ -281,17 +281,17 @@ class EntryTestimony:
         now = weighing.missed[which, speaker].astype(np.int64)
         if claim.agent is not None:
             subject = self._context.numbers[claim.agent]
-            known = weighing.met[which, subject] != UNKNOWN
+            is_known = weighing.met[which, subject] != UNKNOWN
             seen = weighing.meets[which, subject]
-            return known, known & seen, now - weighing.met_missed[which, subject, speaker]
+            return is_known, is_known & seen, now - weighing.met_missed[which, subject, speaker]
         spots = self._known_spots(which, claim)
         watched = weighing.watch_missed[which, spots, speaker]
-        known = (spots >= 0) & (watched >= 0)
+        is_known = (spots >= 0) & (watched >= 0)
         if claim.kind is ClaimKind.BLOCK:
             seen = nodes.watched[which, spots]
         else:
             seen = self._perceives(which, self._found(which, claim), claim)
-        return known, known & seen, now - watched
+        return is_known, is_known & seen, now - watched
 
     def _known_spots(self, which: Numbers, claim: Claim) -> Numbers:
         """Return by node the tracked cell (its index) of the known place; -1: none."""
@@ -299,8 +299,8 @@ class EntryTestimony:
             here = self._table.spot(cell_of(self._context.box, claim.cell))
             return np.full(len(which), here, dtype=np.int64)
         spots = {cell: spot for spot, cell in enumerate(self._table.tracked.tolist())}
-        found = self._found(which, claim)
-        return np.array([spots.get(cell, UNKNOWN) for cell in found], dtype=np.int64)
+        cells_of_nodes = self._found(which, claim)
+        return np.array([spots.get(cell, UNKNOWN) for cell in cells_of_nodes], dtype=np.int64)
 
     def _found(self, which: Numbers, claim: Claim) -> list[int]:
         """Return by node the cell of the container where the item was last perceived; -1: none."""
@@ -320,8 +320,8 @@ class EntryTestimony:
         numbers[numbers >= registry.states] = registry.air  # signs with a text
         cells: dict[tuple[int, ...], int] = {}
         for states in dict.fromkeys(map(tuple, numbers.T.tolist())):
-            known = defaultdict(lambda: UNKNOWN, zip(near, states, strict=True))
-            whole = believed_container_at(registry, known.__getitem__, place)
+            blocks = defaultdict(lambda: UNKNOWN, zip(near, states, strict=True))
+            whole = believed_container_at(registry, blocks.__getitem__, place)
             cells[states] = cell_of(box, whole)
         return [cells[tuple(states)] for states in numbers.T.tolist()]
 
@@ -348,13 +348,13 @@ class EntryTestimony:
         match claim.kind:
             case ClaimKind.POSITION:
                 subject = self._context.numbers.get(str(claim.agent), UNKNOWN)
-                known = nodes.pose[nodes.parent[which], subject] != UNKNOWN
+                has_pose = nodes.pose[nodes.parent[which], subject] != UNKNOWN
                 there = nodes.sees[which, subject] | (nodes.agent[which] == subject)
                 x, y, z = claim.place
                 pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0)
                 poses, space = self._table.poses.arrays(), self._context.space
                 at_place = seeing.sees_place(space, poses, nodes, which, pose)
-                return known & there & (nodes.eye[which] != UNKNOWN), at_place
+                return has_pose & there & (nodes.eye[which] != UNKNOWN), at_place
             case ClaimKind.BLOCK:
                 seen = [
                     nodes.eye[node] != UNKNOWN and bool(self._table.sees_cells(node, (cell,)))
@@ -373,17 +373,17 @@ class EntryTestimony:
                 ]
                 return np.array(elsewhere, dtype=np.bool_), at_place
 
-    def _believe(self, which: Numbers, told: _Told) -> None:
+    def _believe(self, which: Numbers, statement: _Told) -> None:
         """Let nodes believe a claim (semantics, section 8.2)."""
         if len(which) == 0:
             return
-        claim = told.claim
-        basis = self._context.heard_from(self._tick, told.speaker)
+        claim = statement.claim
+        basis = self._context.heard_from(self._tick, statement.speaker)
         match claim.kind:
             case ClaimKind.POSITION:
                 x, y, z = claim.place
                 subject = self._context.numbers[str(claim.agent)]
-                speaker = READ if told.speaker == NOBODY else told.speaker
+                speaker = READ if statement.speaker == NOBODY else statement.speaker
                 pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0, speaker)
                 for node in which.tolist():
                     self._table.set_pose(node, subject, pose, self._tick, current=False)
@@ -447,9 +447,9 @@ def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> N
     items = {} if content is None else content.items
     if item not in items:
         donor, last = -1, 0
-        for at, held in holdings.containers.items():
-            seen = held.basis.observed_at
-            if item in held.items and (donor < 0 or seen > last or (seen == last and at < donor)):
+        for at, store in holdings.containers.items():
+            seen = store.basis.observed_at
+            if item in store.items and (donor < 0 or seen > last or (seen == last and at < donor)):
                 donor, last = at, seen
         if donor >= 0:
             source = holdings.containers[donor]

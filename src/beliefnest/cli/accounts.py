@@ -38,14 +38,14 @@ def accounts(nest: Nest, outcome: Outcome) -> list[dict[str, list[str]]]:
 def _happened(probe: ProbeOutcome, labels: Mapping[Position, str]) -> list[str]:
     if probe.trial is None:
         return [probe.fault] if probe.fault else []
-    told = [
+    events = [
         f"tick {tick}: {happens(event, labels)}"
         for tick, event in probe.result.happened
         if not is_lid(event)
     ]
-    lines = told[-_MOST:]
-    if len(told) > _MOST:
-        lines.insert(0, f"{len(told) - _MOST} earlier events are left out")
+    lines = events[-_MOST:]
+    if len(events) > _MOST:
+        lines.insert(0, f"{len(events) - _MOST} earlier events are left out")
     result = probe.result
     began = probe.trial.state.tick - result.ticks
     ended = "ended well" if result.ok else f"failed: {result.error}"

@@ -109,10 +109,10 @@ def run_command_line(arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         status = _INTERRUPTED
     except (_UsageFault, BeliefNestError, OSError, MemoryError, RuntimeError) as error:
-        told = _told(error)
-        if told is None:
+        failure = _told(error)
+        if failure is None:
             raise
-        return _fail(*told)
+        return _fail(*failure)
     if status == _INTERRUPTED:
         # Newer versions of typer turn the interrupt into this status without a message. A library
         # of NumPy interrupts the process if it cannot start its threads.

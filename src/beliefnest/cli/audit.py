@@ -31,9 +31,9 @@ def run_audit(options: SuiteOptions) -> int:
     for name, default in _FOR_SUITES.items():
         if getattr(options, name) != default:
             raise InputError(f"--{name.replace('_', '-')} is for suites; leave it out of an audit")
-    found = read_published(options.path)
+    published = read_published(options.path)
     with progress_on("audit") as on_progress:
-        done = audit(found, on_progress)
+        done = audit(published, on_progress)
     if not done.items and not done.unread:
         raise InputError(f"{options.path} holds no rows; there is nothing to audit")
     print_report(_json(done), _parts(done), as_json=options.json)

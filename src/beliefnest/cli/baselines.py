@@ -61,14 +61,14 @@ def run_baselines(options: PlayOptions) -> int:
     names = Task.names() if options.task is None else (options.task,)
     if options.page is not None and not set(names) <= set(Task.names()):
         raise InputError(f"--page is for built-in tasks, and {options.task} is none; leave it out")
-    found = _played(names, options)
+    groups = _played(names, options)
     if options.page is not None:
-        _draw(names, found, options.page.parent / "img")
-        replace_file(options.page, page_of(names, found, options.seeds))
+        _draw(names, groups, options.page.parent / "img")
+        replace_file(options.page, page_of(names, groups, options.seeds))
     table = result_table(*_COLUMNS, title="baselines")
-    for each in found:
+    for each in groups:
         table.add_row(*_cells(each))
-    content = {"seeds": options.seeds, "baselines": found}
+    content = {"seeds": options.seeds, "baselines": groups}
     print_report(content, [table], as_json=options.json)
     tasks = [Task.load(name) for name in names]
     hidden = {task.name for task in tasks if not task.form.goals_known}
@@ -78,14 +78,14 @@ def run_baselines(options: PlayOptions) -> int:
         not _is_shortcut(each, is_single=each["task"] in single)
         if each["policy"].startswith(_RULE)
         else _is_as_claimed(each, each["task"] in hidden)
-        for each in found
+        for each in groups
     )
     return 0 if is_claimed else 1
 
 
 def _played(names: Sequence[str], options: PlayOptions) -> list[dict[str, Any]]:
     """Return the summary of the baselines of all tasks, in the order of the names."""
-    found: list[dict[str, Any]] = []
+    groups: list[dict[str, Any]] = []
     for name in names:
         trained = trained_rule(
             partial(Task.load, name), range(_TRAINED, _TRAINED + min(_TRAINING, options.seeds))
@@ -97,8 +97,8 @@ def _played(names: Sequence[str], options: PlayOptions) -> list[dict[str, Any]]:
         study = Study(
             tasks=[name], policies=(*policies, *rules), orders=orders, seeds=options.seeds
         )
-        found += _summary(study, options, Task.load(name).name)
-    return found
+        groups += _summary(study, options, Task.load(name).name)
+    return groups
 
 
 def _hides_goals(name: str) -> bool:
@@ -115,7 +115,7 @@ def _summary(study: Study, options: PlayOptions, part: str) -> list[dict[str, An
         return result.counted(_BY)
 
 
-def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
+def page_of(names: Sequence[str], groups: Sequence[Group], seeds: int) -> str:
     """Return the page about the tasks, as Markdown."""
     lines = [
         "# Tasks",
@@ -137,7 +137,7 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
         "",
         f"| {' | '.join(_COLUMNS)} |",
         "|" + "---|" * len(_COLUMNS),
-        *(f"| {' | '.join(_cells(each))} |" for each in _without_rules(found)),
+        *(f"| {' | '.join(_cells(each))} |" for each in _without_rules(groups)),
         "",
         "## Rules without beliefs",
         "",
@@ -150,7 +150,7 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
         "",
         "| task | chance | best rule | success | others |",
         "|---|---|---|---|---|",
-        *_rule_lines(found),
+        *_rule_lines(groups),
     ]
     for name in names:
         first, _, rest = source_of(name).partition("\n\n")
@@ -165,9 +165,9 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _draw(names: Sequence[str], found: Sequence[Group], folder: Path) -> None:
+def _draw(names: Sequence[str], groups: Sequence[Group], folder: Path) -> None:
     folder.mkdir(exist_ok=True)
-    figure = plot_accuracy(_without_rules(found), ("task", "policy"))
+    figure = plot_accuracy(_without_rules(groups), ("task", "policy"))
     figure.set_size_inches(*_INCHES)
     with replacing(folder / "baselines.png") as out:
         figure.savefig(out, format="png", dpi=150)
@@ -176,46 +176,46 @@ def _draw(names: Sequence[str], found: Sequence[Group], folder: Path) -> None:
             episode.nest.figure(["/"]).save(str(folder / f"task-{name}.png"))
 
 
-def _without_rules(found: Sequence[Group]) -> list[Group]:
-    return [each for each in found if not each["policy"].startswith(_RULE)]
+def _without_rules(groups: Sequence[Group]) -> list[Group]:
+    return [each for each in groups if not each["policy"].startswith(_RULE)]
 
 
-def _cells(found: Group) -> tuple[str, ...]:
-    interval = f"{found['low']:.2f} to {found['high']:.2f}"
-    means = [_mean(found, name) for name in ("ticks", "messages", "false_beliefs_mean")]
-    rate = f"{found['right']}/{found['judged']}"
-    return (found["task"], str(found["needs"]), found["policy"], rate, interval, *means)
+def _cells(group: Group) -> tuple[str, ...]:
+    interval = f"{group['low']:.2f} to {group['high']:.2f}"
+    means = [_mean(group, name) for name in ("ticks", "messages", "false_beliefs_mean")]
+    rate = f"{group['right']}/{group['judged']}"
+    return (group["task"], str(group["needs"]), group["policy"], rate, interval, *means)
 
 
-def _mean(found: Group, name: str) -> str:
-    mean, low, high = (found[f"{name}{end}"] for end in ("", "_low", "_high"))
+def _mean(group: Group, name: str) -> str:
+    mean, low, high = (group[f"{name}{end}"] for end in ("", "_low", "_high"))
     if mean is None:
         return ""
     return f"{mean:.1f}" if low is None else f"{mean:.1f} ({low:.1f} to {high:.1f})"
 
 
-def _is_as_claimed(found: Group, hides_goals: bool) -> bool:
-    needs, is_solved = found["needs"], bool(found["right"] == found["judged"])
+def _is_as_claimed(group: Group, hides_goals: bool) -> bool:
+    needs, is_solved = group["needs"], bool(group["right"] == group["judged"])
     if hides_goals:
-        if found["policy"] == f"search:{needs}":
+        if group["policy"] == f"search:{needs}":
             return not is_solved
-        return is_solved or found["policy"] != f"infer:{needs}"
-    if found["policy"] == f"search:{needs}":
+        return is_solved or group["policy"] != f"infer:{needs}"
+    if group["policy"] == f"search:{needs}":
         return is_solved
-    return bool(found["policy"] != f"search:{needs - 1}" or found["right"] == 0)
+    return bool(group["policy"] != f"search:{needs - 1}" or group["right"] == 0)
 
 
-def _is_shortcut(found: Group, *, is_single: bool) -> bool:
+def _is_shortcut(group: Group, *, is_single: bool) -> bool:
     """Return True if a rule without beliefs wins clearly more than half of the instances."""
     if is_single:
-        return bool(found["needs"] and found["right"] == found["judged"])
-    return bool(found["low"] > _SHORTCUT)
+        return bool(group["needs"] and group["right"] == group["judged"])
+    return bool(group["low"] > _SHORTCUT)
 
 
-def _rule_lines(found: Sequence[Group]) -> Iterator[str]:
+def _rule_lines(groups: Sequence[Group]) -> Iterator[str]:
     """Yield the table of rules without beliefs: for each task chance, and the best rules."""
     tasks: dict[str, list[Group]] = {}
-    for each in found:
+    for each in groups:
         if each["policy"].startswith(_RULE):
             tasks.setdefault(each["task"], []).append(each)
     for task, rows in tasks.items():
@@ -229,5 +229,5 @@ def _rule_lines(found: Sequence[Group]) -> Iterator[str]:
         yield f"| {' | '.join(cells)} |"
 
 
-def _rate(found: Group) -> str:
-    return f"{found['right']}/{found['judged']} ({found['low']:.2f} to {found['high']:.2f})"
+def _rate(group: Group) -> str:
+    return f"{group['right']}/{group['judged']} ({group['low']:.2f} to {group['high']:.2f})"

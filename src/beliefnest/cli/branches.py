@@ -22,16 +22,16 @@ def show_branches(run: Path, *, as_json: bool) -> None:
     Raises:
         BeliefNestError: There is no such run.
     """
-    told = []
+    runs = []
     for store in stores_in(run):
         with Journal.read(store) as journal:
             infos, selected = journal.timelines(), set(journal.records.selected().items())
         if as_json:
-            told.append({"run": str(store), "timelines": [_told(i, selected) for i in infos]})
+            runs.append({"run": str(store), "timelines": [_told(i, selected) for i in infos]})
         else:
             stdout().print(_tree(str(store), infos, selected))
     if as_json:
-        sys.stdout.write(json.dumps(told, indent=2) + "\n")
+        sys.stdout.write(json.dumps(runs, indent=2) + "\n")
 
 
 def _told(info: TimelineInfo, selected: set[tuple[tuple[str, ...], str]]) -> dict[str, Any]:

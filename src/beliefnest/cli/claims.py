@@ -28,20 +28,20 @@ def claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dic
     """
     return [
         {
-            "tick": told.tick,
-            "speaker": told.speaker,
-            "addressee": told.addressee,
-            "text": told.text,
-            "claim": told.claim.plain(),
-            "claims_from": told.claims_from,
-            "hearers": list(told.hearers),
-            "false": told.false,
-            "lie": told.lie,
+            "tick": claim.tick,
+            "speaker": claim.speaker,
+            "addressee": claim.addressee,
+            "text": claim.text,
+            "claim": claim.claim.plain(),
+            "claims_from": claim.claims_from,
+            "hearers": list(claim.hearers),
+            "false": claim.false,
+            "lie": claim.lie,
             "beliefs": {
-                path: {"taken_up": told.taken_up(path), "why": told.why(path)} for path in paths
+                path: {"taken_up": claim.taken_up(path), "why": claim.why(path)} for path in paths
             },
         }
-        for told in claims
+        for claim in claims
     ]
 
 
@@ -59,10 +59,10 @@ def claims_table(claims: Sequence[MadeClaim], path: str, scenario: Scenario) -> 
     is_belief = claims[0].made_in != path
     if is_belief:
         table.add_column(f"in {path}")
-    for told in claims:
-        hearers = printable(", ".join(told.hearers))
-        why = [told.why(path)] if is_belief else []
-        table.add_row(*map(Text, (*_cells(told, scenario), hearers, *why)))
+    for claim in claims:
+        hearers = printable(", ".join(claim.hearers))
+        why = [claim.why(path)] if is_belief else []
+        table.add_row(*map(Text, (*_cells(claim, scenario), hearers, *why)))
     return table
 
 
@@ -77,31 +77,31 @@ def print_claims(
     table = _begun()
     for path in paths:
         table.add_column(path)
-    for told in claims:
+    for made in claims:
         table.add_row(
-            *map(Text, (*_cells(told, scenario), *(_verdict(told, path) for path in paths)))
+            *map(Text, (*_cells(made, scenario), *(_verdict(made, path) for path in paths)))
         )
     # Rich limits the measured width to `max_width`.
     least = Measurement.get(console, console.options.update(max_width=10_000), table).minimum
     if least <= console.width:
         console.print(table)
         return
-    for told in claims:
-        tick, speaker, claim, kind = _cells(told, scenario)
+    for made in claims:
+        tick, speaker, claim, kind = _cells(made, scenario)
         suffix = f" ({kind})" if kind else ""
         console.print(Text(f"tick {tick}, {speaker}: {claim}{suffix}"))
-        console.print(folded(_by_verdict(told, paths)))
+        console.print(folded(_by_verdict(made, paths)))
 
 
-def _by_verdict(told: MadeClaim, paths: Sequence[str]) -> Table:
+def _by_verdict(claim: MadeClaim, paths: Sequence[str]) -> Table:
     """Return a table with a row for each verdict on a claim and the beliefs that reached it."""
-    found: dict[str, list[str]] = {}
+    paths_by_verdict: dict[str, list[str]] = {}
     for path in paths:
-        taken = _verdict(told, path).replace("yes", "taken up").replace("no (", "not taken up (")
-        found.setdefault(taken, []).append(path)
+        taken = _verdict(claim, path).replace("yes", "taken up").replace("no (", "not taken up (")
+        paths_by_verdict.setdefault(taken, []).append(path)
     table = Table(box=None, show_header=False, padding=(0, 0, 0, 2))
-    for verdict in sorted(found):
-        table.add_row(verdict, Text(", ".join(found[verdict])))
+    for verdict in sorted(paths_by_verdict):
+        table.add_row(verdict, Text(", ".join(paths_by_verdict[verdict])))
     return table
 
 
@@ -127,10 +127,10 @@ def _begun() -> Table:
     return Table("tick", "speaker", "claim", "", box=box.SIMPLE, title_justify="left")
 
 
-def _cells(told: MadeClaim, scenario: Scenario) -> list[str]:
-    to = "" if told.addressee is None else f" to {told.addressee}"
-    kind = "a lie" if told.lie else "false" if told.false else ""
-    row = (str(told.tick), f"{told.speaker or 'a sign'}{to}", _words(told.claim, scenario), kind)
+def _cells(claim: MadeClaim, scenario: Scenario) -> list[str]:
+    to = "" if claim.addressee is None else f" to {claim.addressee}"
+    kind = "a lie" if claim.lie else "false" if claim.false else ""
+    row = (str(claim.tick), f"{claim.speaker or 'a sign'}{to}", _words(claim.claim, scenario), kind)
     return [printable(cell) for cell in row]
 
 
@@ -142,9 +142,9 @@ def _words(claim: Claim, scenario: Scenario) -> str:
     return claim.about(container_name(claim.cell, scenario.setting))
 
 
-def _verdict(told: MadeClaim, path: str) -> str:
-    condition = told.condition(path)
-    given = "" if condition is None else f" ({condition})"
-    if told.taken_up(path):
-        return f"yes{given}"
-    return f"no{given}" if given or told.is_heard(path) else "not heard"
+def _verdict(claim: MadeClaim, path: str) -> str:
+    condition = claim.condition(path)
+    why = "" if condition is None else f" ({condition})"
+    if claim.taken_up(path):
+        return f"yes{why}"
+    return f"no{why}" if why or claim.is_heard(path) else "not heard"

@@ -103,9 +103,9 @@ def report_text(parts: Iterable[Printed]) -> str:
     return captured.get()
 
 
-def print_report(found: object, parts: Iterable[Printed], *, as_json: bool) -> None:
+def print_report(report: object, parts: Iterable[Printed], *, as_json: bool) -> None:
     """Print results: as a JSON value, or as a report (see `report_text`)."""
-    sys.stdout.write(json.dumps(found, indent=2) + "\n" if as_json else report_text(parts))
+    sys.stdout.write(json.dumps(report, indent=2) + "\n" if as_json else report_text(parts))
 
 
 def print_table(console: Console, table: Table) -> None:

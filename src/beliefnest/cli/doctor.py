@@ -47,17 +47,17 @@ def examine(server: str | None = None, *, as_json: bool, warm: bool = False) -> 
         raise InputError(f"{server!r} is no address of a server; give minecraft://HOST:PORT")
     if warm:
         _use_kernels()
-    found = []
+    findings = []
     for name, check in (*_CHECKS, *(() if server is None else _server_checks(server))):
         finding = _find(name, check)
-        found.append(finding)
+        findings.append(finding)
         if not as_json:
             word = "ok  " if finding.ok else "FAIL"
             say(f"{word}  {finding.name}: {finding.detail}\n")
             sys.stdout.flush()
     if as_json:
-        sys.stdout.write(json.dumps([asdict(finding) for finding in found], indent=2) + "\n")
-    return 0 if all(finding.ok for finding in found) else _FAILED
+        sys.stdout.write(json.dumps([asdict(finding) for finding in findings], indent=2) + "\n")
+    return 0 if all(finding.ok for finding in findings) else _FAILED
 
 
 def _find(name: str, check: Callable[[], str]) -> CheckResult:

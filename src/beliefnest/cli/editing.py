@@ -129,11 +129,11 @@ class FileEditor:
         alone = replace(source, setting=replace(source.setting, people=frozenset()))
         with Nest.open(alone, world="scripted") as nest:
             about = About(title=source.name, labels=source.labels)
-            told = RunData(nest.reader, about, 0).update()
+            scene = RunData(nest.reader, about, 0).update()
             sees = {name: self._seen_by(nest, name) for name in nest.agents}
             seen = nest["/"].visible_blocks(viewer) if viewer in sees else None
         return {
-            "run": told,
+            "run": scene,
             "sees": sees,
             "seen": None if seen is None else [int(each) for each in seen.ravel()],
             "drawn": "map" in self._document(text).root.value,
@@ -144,7 +144,7 @@ class FileEditor:
         box = nest.reader.setting.snapshot.box
         state, mask = nest[f"/{viewer}"].state, nest["/"].visible_blocks(viewer)
         names = nest.reader.agents
-        found = [
+        seen_names = [
             f"agent-{names.index(name)}"
             for name, believed in state.agents.items()
             if name != viewer and believed.current
@@ -153,8 +153,8 @@ class FileEditor:
         for place in nest.reader.setting.snapshot.containers:
             i, j, k = box.index(place)
             if mask[i, j, k]:
-                found.append(f"container-{(i * height + j) * depth + k}")
-        return found
+                seen_names.append(f"container-{(i * height + j) * depth + k}")
+        return seen_names
 
     def _document(self, text: str) -> Document:
         # Templates of prompts that the file names stand beside it.

@@ -59,10 +59,10 @@ def _notes(records: Records) -> Iterator[TableRow]:
 
 def _rounds(nest: RecordedNest) -> Iterator[TableRow]:
     """Yield the decisions of an episode's rounds, and the tick at which its goal was reached."""
-    told = told_episode(nest)
-    if told is not None:
-        yield from (("rounds", row) for row in round_rows(told))
-        yield from (("goals", row) for row in goal_rows(told))
+    episode = told_episode(nest)
+    if episode is not None:
+        yield from (("rounds", row) for row in round_rows(episode))
+        yield from (("goals", row) for row in goal_rows(episode))
 
 
 def _beliefs(nest: RecordedNest, paths: Sequence[str]) -> Iterator[BeliefRow]:
@@ -79,6 +79,6 @@ def import_run(trace: Path, out: Path) -> None:
     Raises:
         BeliefNestError: The trace has bad lines, or the file exists or cannot be written.
     """
-    told = load_trace(trace, Registry.load())
-    import_trace(told, trace.stem, out)
-    say(f"{out}: {len(told.entries)} ticks with changes, {len(told.agents)} agents\n")
+    loaded = load_trace(trace, Registry.load())
+    import_trace(loaded, trace.stem, out)
+    say(f"{out}: {len(loaded.entries)} ticks with changes, {len(loaded.agents)} agents\n")

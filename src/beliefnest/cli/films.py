@@ -139,18 +139,18 @@ def _correlations(
     judgments: Sequence[Judgment], lesion: Lesion | None, seed: int
 ) -> dict[str, Any]:
     """Return the coefficients of all that people judged, with intervals."""
-    found: dict[str, Any] = {}
+    correlations: dict[str, Any] = {}
     for about in ABOUT:
         pairs = agreement(judgments, about)
         if not len(pairs.model):
             continue
-        found[about] = {
+        correlations[about] = {
             "r": None if math.isnan(pairs.r) else pairs.r,
             "interval": interval(pairs, seed),
             "judgments": len(pairs.model),
             "published": PUBLISHED[lesion].get(about),
         }
-    return found
+    return correlations
 
 
 def _judgment(judgment: Judgment) -> dict[str, Any]:
@@ -245,10 +245,10 @@ def _points(pairs: JudgesAgreement) -> list[Dot]:
 def _coefficient(pairs: JudgesAgreement, seed: int) -> str:
     ends = interval(pairs, seed)
     r = None if math.isnan(pairs.r) else pairs.r
-    told = [f"r = {_r_text(r)}", f"n = {len(pairs.names)}"]
+    parts = [f"r = {_r_text(r)}", f"n = {len(pairs.names)}"]
     if ends is not None:
-        told.insert(1, f"95 % {_interval_text(ends)}")
-    return ", ".join(told).replace("-", "\u2212")
+        parts.insert(1, f"95 % {_interval_text(ends)}")
+    return ", ".join(parts).replace("-", "\u2212")
 
 
 def _parts(
@@ -262,9 +262,9 @@ def _parts(
         yield table
         if report["groups"]:
             table = _table("inverse planning, by group of films", "group", *_NUMBERS)
-            for group, found in report["groups"].items():
-                told = f"{group} ({found['films']} films)"
-                _add(table, told, found["correlations"], published=False)
+            for group, part in report["groups"].items():
+                title_of_group = f"{group} ({part['films']} films)"
+                _add(table, title_of_group, part["correlations"], published=False)
             yield table
     else:
         yield f"{title}; people judged none of them"
@@ -288,8 +288,8 @@ def _table(title: str, heading: str, *numbers: str) -> Table:
     return result_table(heading, "judgments of", *numbers, title=title, right=numbers)
 
 
-def _add(table: Table, name: str, found: Mapping[str, Any], *, published: bool = True) -> None:
-    for about, each in found.items():
+def _add(table: Table, name: str, pairs: Mapping[str, Any], *, published: bool = True) -> None:
+    for about, each in pairs.items():
         cells = [name, about, str(each["judgments"]), _r_text(each["r"])]
         cells.append(_interval_text(each["interval"]) if each["interval"] else "")
         if published:

@@ -193,11 +193,11 @@ def store_in(run: Path) -> Path:
         return run
     if (run / STORE).is_file():
         return run / STORE
-    found = _below(run)
-    if len(found) == 1:
-        return found[0]
-    if found:
-        each = [str(store.parent if store.name == STORE else store) for store in found]
+    stores = _below(run)
+    if len(stores) == 1:
+        return stores[0]
+    if stores:
+        each = [str(store.parent if store.name == STORE else store) for store in stores]
         more = f" and {len(each) - _MOST_NAMED} more" if len(each) > _MOST_NAMED else ""
         names = ", ".join(each[:_MOST_NAMED])
         raise InputError(f"{run} holds several runs; name one of {names}{more}")
@@ -213,10 +213,10 @@ def stores_in(run: Path) -> tuple[Path, ...]:
     Raises:
         InputError: There is no run file.
     """
-    found = (run,) if run.is_file() else _below(run)
-    if not found:
+    stores = (run,) if run.is_file() else _below(run)
+    if not stores:
         raise _no_store(run)
-    return found
+    return stores
 
 
 def _below(folder: Path) -> tuple[Path, ...]:
@@ -272,14 +272,14 @@ def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) 
     """Raise InputError if a folder holds another run, or a run that has ended."""
     if not (path / REPORT).is_file():
         raise InputError(f"{path} is not empty; name another folder with --out")
-    found = read_report(path)
-    if found["status"] == "done":
+    report = read_report(path)
+    if report["status"] == "done":
         raise InputError(f"{path} holds a run that has ended; name another folder with --out")
     kept, templates = path / _SCENARIO, templates_file(path / _SCENARIO)
     # Compare settings as JSON has them, in which a tuple is a list.
     asked = json.loads(json.dumps(settings))
-    known = found["settings"]
-    differing = [key for key in {**known, **asked} if known.get(key) != asked.get(key)]
+    recorded = report["settings"]
+    differing = [key for key in {**recorded, **asked} if recorded.get(key) != asked.get(key)]
     if not kept.is_file() or kept.read_text(encoding="utf-8") != scenario.text:
         differing.append("scenario")
     if (read_json(templates, _OTHER) if templates.is_file() else {}) != scenario.templates:

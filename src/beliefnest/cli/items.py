@@ -29,34 +29,34 @@ def run_items(options: ItemsOptions) -> int:
     if not options.verify:
         made.write(options.out)
     report = report_of(made.items) if options.report else {}
-    told = {
+    summary = {
         "folder": str(options.out),
         "items": len(made.items),
         "dropped": len(made.dropped),
         "differences": differing,
         **({"report": report} if report else {}),
     }
-    print_report(told, _parts(options, made, differing, report), as_json=options.json)
+    print_report(summary, _parts(options, made, differing, report), as_json=options.json)
     return int(bool(differing))
 
 
 def _set_options(options: ItemsOptions) -> dict[str, Any]:
     """Return name, share, version and changes of the set; with --verify those of the folder."""
-    given = {
+    options_of_set = {
         "held_out": options.held_out,
         "version": options.set_version,
         "changes": options.changes,
     }
     if not options.verify:
-        own = {name: value for name, value in given.items() if value is not None}
-        check_folder(options.out, own.get("held_out", 0.0))
+        own = {name: value for name, value in options_of_set.items() if value is not None}
+        check_folder(options.out, options.held_out or 0.0)
         return {"name": options.study.stem, **own}
-    for name, value in given.items():
+    for name, value in options_of_set.items():
         if value is not None:
             option = "set-version" if name == "version" else name.replace("_", "-")
             raise InputError(f"--{option} is for writing a set; --verify reads it from the folder")
     there = read_description(options.out)
-    return {name: getattr(there, name) for name in ("name", *given)}
+    return {name: getattr(there, name) for name in ("name", *options_of_set)}
 
 
 def _parts(

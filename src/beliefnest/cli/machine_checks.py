@@ -13,9 +13,9 @@ _KEY = "_API_KEY"
 
 
 def _limits() -> str:
-    found = low_limits()
-    if found is not None:
-        raise BodyError(found)
+    low_limit = low_limits()
+    if low_limit is not None:
+        raise BodyError(low_limit)
     return "memory, files and threads suffice for Node"
 
 

@@ -27,14 +27,14 @@ def score_runs(
         a result counts as one; `rate` and its 95 % `interval`, None if the model was never asked;
         `tokens`; `cost` in US dollars, None if not known; `seconds`, the mean wall time.
     """
-    found = []
+    rows = []
     for group in count_rows([*map(_ended, runs), *map(_failed, failures)], _BY):
         own, without = (
             [each for each in some if all(each[name] == group[name] for name in _BY)]
             for some in (runs, failures)
         )
         seconds = statistics.mean(run["seconds"] for run in own) if own else 0.0
-        found.append(
+        rows.append(
             {
                 **{name: group[name] for name in _BY},
                 "passed": group["right"],
@@ -48,7 +48,7 @@ def score_runs(
                 "seconds": round(seconds, 3),
             }
         )
-    return sorted(found, key=lambda score: -1 if score["condition"] is None else score["condition"])
+    return sorted(rows, key=lambda score: -1 if score["condition"] is None else score["condition"])
 
 
 def _ended(run: Mapping[str, Any]) -> dict[str, Any]:
@@ -70,7 +70,7 @@ def score_table(name: str, scores: Sequence[Mapping[str, Any]]) -> Table:
     numbers = ("condition", "passed", "rate", "95 % interval", "tokens", "cost", "seconds")
     headings = (*numbers[:1], "model", *numbers[1:4], *unanswered, *numbers[4:])
     table = result_table(*headings, title=name, right=numbers)
-    for score, told in zip(scores, words, strict=True):
+    for score, word in zip(scores, words, strict=True):
         low, high = score["interval"] or (0.0, 1.0)
         table.add_row(
             "-" if score["condition"] is None else str(score["condition"]),
@@ -78,7 +78,7 @@ def score_table(name: str, scores: Sequence[Mapping[str, Any]]) -> Table:
             f"{score['passed']} of {score['total']}",
             "-" if score["rate"] is None else f"{score['rate']:.0%}",
             f"{low:.0%} to {high:.0%}",
-            *([told] if any(words) else []),
+            *([word] if any(words) else []),
             f"{score['tokens']:,}",
             cost_text(score["cost"]),
             f"{score['seconds']:.2f}",

@@ -35,8 +35,8 @@ def with_options(
 
     def decorated(command: Callable[[Options], Status]) -> Callable[..., Status]:
         @wraps(command)
-        def called(**given: object) -> Status:
-            return command(kind(**given))
+        def called(**values: object) -> Status:
+            return command(kind(**values))
 
         # Typer reads a command's options from its signature.
         called.__dict__["__signature__"] = inspect.signature(kind)

@@ -90,12 +90,12 @@ def about_run(journal: Journal, nest: RecordedNest, paths: Sequence[str] = ()) -
 
 def _inferences(nest: RecordedNest, scenario: Scenario) -> list[dict[str, Any]]:
     """Return the posteriors of the probes that infer; without those that do not fit the run."""
-    told = []
+    inferences = []
     for number, probe in enumerate(scenario.probes, start=1):
         # A run that was interrupted, or that still goes on, may lack the ticks to infer from.
         with suppress(ScenarioError):
             if probe.infer is not None:
                 inference = probe.infer.inference(nest[probe.path])
                 title = f"{probe.label or f'probe {number}'}, by {probe.path}"
-                told.append({**told_inference(inference, _STEPS), "title": title})
-    return told
+                inferences.append({**told_inference(inference, _STEPS), "title": title})
+    return inferences

@@ -18,11 +18,11 @@ def run_participants(options: ParticipantsOptions) -> None:
     Raises:
         BeliefNestError: The study or a file is wrong, or a script failed.
     """
-    given = {"pseudonyms": options.pseudonyms, "exclude": options.exclude}
-    for name in (name for name, value in given.items() if value and not options.read):
+    only_read = {"pseudonyms": options.pseudonyms, "exclude": options.exclude}
+    for name in (name for name, value in only_read.items() if value and not options.read):
         raise InputError(f"--{name} belongs to reading answers; give their files with --read")
-    told, lines = _read(options) if options.read else _written(options)
-    print_report(told, lines, as_json=options.json)
+    summary, lines = _read(options) if options.read else _written(options)
+    print_report(summary, lines, as_json=options.json)
 
 
 def _written(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
@@ -38,7 +38,7 @@ def _written(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
         )
         on_progress("writing the page", page.items, page.items)
     start = page.folder / "index.html"
-    told = {
+    summary = {
         "page": str(start),
         "items": page.items,
         "questions": page.questions,
@@ -47,7 +47,7 @@ def _written(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
     }
     lists = f", in lists of {listed([str(n) for n in page.lists])}" * (len(page.lists) > 1)
     size = f"{counted(page.items, 'item')} with {counted(page.questions, 'question')}{lists}"
-    return told, [*page.notes, f"{start}: {size}; open it with ?participant=ID"]
+    return summary, [*page.notes, f"{start}: {size}; open it with ?participant=ID"]
 
 
 def _read(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
@@ -67,7 +67,7 @@ def _read(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
         write_files(result, result.groups)
     own = [row for row in result.rows if row["model"] == options.name]
     people = {row["participant"] for row in own}
-    told = {
+    data = {
         "study_dir": str(result.folder.path),
         "participants": len(people),
         "rows": len(own),
@@ -75,4 +75,4 @@ def _read(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
         "notes": list(notes),
     }
     size = f"{counted(len(people), 'participant')} and {counted(len(own), 'row')}"
-    return told, [*notes, f"{result.folder.path}: {size} of {options.name}, {told['right']} right"]
+    return data, [*notes, f"{result.folder.path}: {size} of {options.name}, {data['right']} right"]

@@ -94,10 +94,10 @@ def _with_ghosts(scene: Scene, outcome: Outcome, viewers: Sequence[str]) -> Scen
     wrong = {each.where for each in _wrong_in(state, outcome) if not each.is_owned}
     ghosts = []
     for person in scene.people:
-        held = state.agents[person.name].position
+        believed = state.agents[person.name].position
         if person.name in viewers[1:] and person.name in wrong:
             ghosts.append(
-                replace(person, position=held, mark=Mark.FALSE, believer=viewers[0], above=0)
+                replace(person, position=believed, mark=Mark.FALSE, believer=viewers[0], above=0)
             )
     return replace(scene, people=(*scene.people, *ghosts))
 
@@ -107,11 +107,11 @@ def _state_card(state: State, outcome: Outcome) -> Card:
     wrong = _wrong_in(state, outcome)
     by_place = {each.where: each for each in wrong if not each.is_owned}
     stores = read_stores(state, best_height([state]), outcome.scenario.labels, by_place)
-    told = _agents_told(outcome)
+    agents = _agents_told(outcome)
     heard = _heard(state, outcome)
-    if not (stores or told or heard):
-        told = tuple(state.agents)
-    notes = [Note(_place_words(name, state, outcome.scenario), name in by_place) for name in told]
+    if not (stores or agents or heard):
+        agents = tuple(state.agents)
+    notes = [Note(_place_words(name, state, outcome.scenario), name in by_place) for name in agents]
     notes += [Note(f"{each.where} has {each.held}", false=True) for each in wrong if each.is_owned]
     return Card(
         title=" that ".join(f"{titled(name)} believes" for name in state.path) or "In reality",
@@ -132,8 +132,8 @@ def _heard(state: State, outcome: Outcome) -> list[Note]:
     """Return a note for each utterance that the scenario states expectations about."""
     facts, named = StateFacts(state), partial(container_name, setting=outcome.scenario.setting)
     expected = [each.expectation.fact for each in outcome.expectations]
-    found = [each.found(facts, named) for each in expected if each.noted]
-    return [Note(f"{what}: {there}") for what, there in dict.fromkeys(found)]
+    notes = [each.found(facts, named) for each in expected if each.noted]
+    return [Note(f"{what}: {there}") for what, there in dict.fromkeys(notes)]
 
 
 def _place_words(name: str, state: State, scenario: Scenario) -> str:
@@ -144,8 +144,8 @@ def _place_words(name: str, state: State, scenario: Scenario) -> str:
     if agent.current or agent.basis is None:
         return f"{name}: {where}"
     basis = agent.basis
-    told = told_text(basis.source, basis.speaker or "a sign", state.tick - basis.observed_at)
-    return f"{name}: {where}, {told}"
+    source = told_text(basis.source, basis.speaker or "a sign", state.tick - basis.observed_at)
+    return f"{name}: {where}, {source}"
 
 
 def _held(state: State, outcome: Outcome) -> bool | None:

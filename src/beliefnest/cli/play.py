@@ -45,8 +45,8 @@ def play_task(options: PlayOptions) -> int:
     check_world(options.world, servers=False)
     query = query_of(options.system, options.requests)
     named = _pairs(options.agent or (), "--agent", "NAME=POLICY")
-    given = _pairs(options.set or (), "--set", "NAME=VALUE")
-    parameters = {name: _value(text) for name, text in given.items()}
+    texts = _pairs(options.set or (), "--set", "NAME=VALUE")
+    parameters = {name: _value(text) for name, text in texts.items()}
     task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
     policies = {
         agent: with_query(policy, query)
@@ -106,7 +106,7 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
     if options.out is None or not (options.out / _RUN).exists():
         return asked
     try:
-        held = Episode.resume(
+        kept = Episode.resume(
             options.out / _RUN,
             budget=budget if budget != Budget() else None,
             patience_s=options.patience,
@@ -117,21 +117,21 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
             left.unlink()
         return asked
     for what, of_asked, of_held in (
-        ("task", asked.task.name, held.task.name),
-        ("seed", asked.seed, held.seed),
-        ("world", asked.world, held.world),
-        ("instance", asked.task.plain(), held.task.plain()),
-        ("policies", _told(asked.policies), _told(held.policies)),
+        ("task", asked.task.name, kept.task.name),
+        ("seed", asked.seed, kept.seed),
+        ("world", asked.world, kept.world),
+        ("instance", asked.task.plain(), kept.task.plain()),
+        ("policies", _told(asked.policies), _told(kept.policies)),
     ):
         if of_asked != of_held:
-            held.close()
-            found = "another one" if isinstance(of_held, dict) else of_held
+            kept.close()
+            other = "another one" if isinstance(of_held, dict) else of_held
             verb = "are" if what == "policies" else "is"
             raise InputError(
-                f"{options.out} holds an episode whose {what} {verb} {found}; give the same to "
+                f"{options.out} holds an episode whose {what} {verb} {other}; give the same to "
                 "continue it, or name another folder"
             )
-    return held
+    return kept
 
 
 def _made(folder: Path) -> Path:
@@ -143,9 +143,9 @@ def _made(folder: Path) -> Path:
     return folder
 
 
-def _pairs(given: Sequence[str], option: str, form: str) -> dict[str, str]:
+def _pairs(texts: Sequence[str], option: str, form: str) -> dict[str, str]:
     pairs = {}
-    for text in given:
+    for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name or not value:
             raise InputError(f"{option} is {text!r}; write {form}")
@@ -168,14 +168,14 @@ def _told(policies: Mapping[str, str]) -> str:
 
 
 def _report(episode: Episode, options: PlayOptions) -> dict[str, Any]:
-    told = told_episode(episode.nest)
-    assert told is not None
-    branch = told["branches"][episode.branch]
+    episode_report = told_episode(episode.nest)
+    assert episode_report is not None
+    branch = episode_report["branches"][episode.branch]
     report: dict[str, Any] = {
         "task": episode.task.name,
         "world": episode.world,
         "success": episode.success,
-        "start": told["start"],
+        "start": episode_report["start"],
         "goal": [
             {"condition": text, "never": never, "tick": tick}
             for text, never, tick in branch["goal"]
@@ -205,10 +205,10 @@ def _report(episode: Episode, options: PlayOptions) -> dict[str, Any]:
     return report
 
 
-def _help(found: Help) -> dict[str, Any]:
+def _help(help_report: Help) -> dict[str, Any]:
     return {
-        "needed": list(found.needed),
-        "given": list(found.given),
+        "needed": list(help_report.needed),
+        "given": list(help_report.given),
         "acts": [
             {
                 "agent": act.agent,
@@ -216,7 +216,7 @@ def _help(found: Help) -> dict[str, Any]:
                 "helped": list(act.helped),
                 "worse": list(act.worse),
             }
-            for act in found.acts
+            for act in help_report.acts
         ],
     }
 
@@ -225,9 +225,9 @@ def _parts(report: Mapping[str, Any]) -> Iterator[Printed]:
     headings = ("round", "agent", "program", "ended")
     table = result_table(*headings, title=report["task"], right=("round",))
     for part in report["rounds"]:
-        for agent, told in part["agents"].items():
-            ended = (told["outcome"] or told["ended"]).replace("_", " ")
-            cells = (str(part["round"]), agent, told["program"].strip(), ended)
+        for agent, turn in part["agents"].items():
+            ended = (turn["outcome"] or turn["ended"]).replace("_", " ")
+            cells = (str(part["round"]), agent, turn["program"].strip(), ended)
             table.add_row(*(Text(printable(cell)) for cell in cells))
     yield table
     yield from _considered_lines(report["rounds"])
@@ -253,8 +253,8 @@ def _considered_lines(rounds: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """
     latest: dict[str, tuple[int, object]] = {}
     for part in rounds:
-        for agent, told in part["agents"].items():
-            considered = told.get("considered")
+        for agent, turn in part["agents"].items():
+            considered = turn.get("considered")
             if considered is None:
                 continue
             first, before = latest.get(agent, (0, None))
@@ -268,9 +268,9 @@ def _considered_lines(rounds: Sequence[Mapping[str, Any]]) -> Iterator[str]:
 
 def _asked_lines(measures: Mapping[str, Any]) -> Iterator[str]:
     """Yield lines about models' answers without a program, if there were any."""
-    told = unanswered_words(Counter(measures["not_answered"]))
-    if told:
-        yield f"rounds without a program of a model: {told}"
+    reasons = unanswered_words(Counter(measures["not_answered"]))
+    if reasons:
+        yield f"rounds without a program of a model: {reasons}"
     if measures["asked_again"]:
         yield f"models were asked again {counted(measures['asked_again'], 'time')}"
 
@@ -281,14 +281,14 @@ def _goal_line(condition: Mapping[str, Any]) -> str:
     return f"{kind}{condition['condition']}: {when}"
 
 
-def _help_lines(found: Mapping[str, Any], measures: Mapping[str, Any]) -> list[str]:
+def _help_lines(help_report: Mapping[str, Any], measures: Mapping[str, Any]) -> list[str]:
     """Return a line for each agent that needed help, and for each help that was given."""
-    needed, given = (", ".join(found[key]) or "nobody" for key in ("needed", "given"))
+    needed, givers = (", ".join(help_report[key]) or "nobody" for key in ("needed", "given"))
     lines = [
-        f"help: needed by {needed}; given to {given}; superfluous: {measures['help_superfluous']} "
-        f"of {counted(len(found['acts']), 'program')} in which something was said or given"
+        f"help: needed by {needed}; given to {givers}; superfluous: {measures['help_superfluous']} "
+        f"of {counted(len(help_report['acts']), 'program')} in which something was said or given"
     ]
-    for act in found["acts"]:
+    for act in help_report["acts"]:
         first, last = act["rounds"]
         when = f"round {first}" if first == last else f"rounds {first} to {last}"
         does = f"helped {', '.join(act['helped'])}" if act["helped"] else "helped nobody else"

@@ -31,18 +31,18 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
         BeliefNestError: There is no such run, it ran no programs, or the world failed.
     """
     same = True
-    told = []
+    rows = []
     # One pool of worlds serves all seeds: a study has a seed for each of its many runs.
     with Worlds(0) as worlds:
         for store in stores_in(run):
             for replayed in _replayed(store, worlds):
                 same = same and replayed.difference is None
                 row = _row(store, replayed)
-                told.append(row)
+                rows.append(row)
                 if not as_json:
                     say(_line(row) + "\n")
     if as_json:
-        sys.stdout.write(json.dumps({"same": same, "timelines": told}, indent=2) + "\n")
+        sys.stdout.write(json.dumps({"same": same, "timelines": rows}, indent=2) + "\n")
     return 0 if same else 1
 
 
@@ -70,13 +70,13 @@ def _replayed(store: Path, worlds: Worlds) -> Iterator[ReplayedTimeline]:
 
 
 def _row(store: Path, replayed: ReplayedTimeline) -> dict[str, object]:
-    found = replayed.difference
+    first = replayed.difference
     return {
         "store": str(store),
         "path": path_text(replayed.key.path),
         "branch": replayed.key.branch,
         "programs": replayed.programs,
-        "difference": None if found is None else msgspec.to_builtins(found, str_keys=True),
+        "difference": None if first is None else msgspec.to_builtins(first, str_keys=True),
     }
 
 

@@ -99,9 +99,9 @@ def count_outcomes(
     runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
 ) -> dict[str, int]:
     """Return the number of probes by outcome; a run without a result counts as one."""
-    found = Counter(probe["outcome"] for run in runs for probe in run["probes"])
-    found.update(failure["outcome"] for failure in failures)
-    return {outcome: found[outcome] for outcome in OUTCOMES}
+    counts = Counter(probe["outcome"] for run in runs for probe in run["probes"])
+    counts.update(failure["outcome"] for failure in failures)
+    return {outcome: counts[outcome] for outcome in OUTCOMES}
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,11 +240,11 @@ def _cells(outcome: Outcome) -> dict[str, str]:
     cells: dict[str, list[str]] = {}
     for each in outcome.expectations:
         expectation, setting = each.expectation, outcome.scenario.setting
-        what, found = expectation.fact.found(
+        what, state_words = expectation.fact.found(
             StateFacts(outcome.state(expectation.path)), partial(container_name, setting=setting)
         )
         heading = f"{escape(what)} in {expectation.where}"
-        cells.setdefault(heading, []).append(_marked(escape(found), each.ok))
+        cells.setdefault(heading, []).append(_marked(escape(state_words), each.ok))
     for probe in outcome.probes:
         heading, text = _acted(probe, outcome.scenario)
         placed = {} if probe.trial is None else probe.trial.result.placed
@@ -259,10 +259,10 @@ def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
     probe = outcome.probe
     setting = scenario.setting
     alone = len({type(each) for each in probe.expect}) == 1
-    told = [each.expected.told(each, outcome, setting, alone=alone) for each in outcome.verdicts]
+    deeds = [each.expected.told(each, outcome, setting, alone=alone) for each in outcome.verdicts]
     if not probe.expect:
-        told = [container_name(outcome.opened[0], setting) if outcome.opened else "nothing"]
-    text = "; ".join(told)
+        deeds = [container_name(outcome.opened[0], setting) if outcome.opened else "nothing"]
+    text = "; ".join(deeds)
     if outcome.outcome not in ("ok", "wrong"):
         text += f" ({outcome.outcome.replace('_', ' ')})"
     if outcome.inferred is not None:

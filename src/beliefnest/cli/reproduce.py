@@ -96,12 +96,12 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
     about = f"{right} of {len(rows)} probes as expected, all conditions and copies, {seconds:.0f} s"
     if page is not None:
         _write_page(page, lines, about)
-    found = {"claims": lines, "rows": len(rows), "right": right, "seconds": round(seconds, 1)}
+    report = {"claims": lines, "rows": len(rows), "right": right, "seconds": round(seconds, 1)}
     table = result_table(*_HEADINGS)
     for line in lines:
         table.add_row(*_cells(line))
     commands = dict.fromkeys(line["command"] for line in lines)
-    print_report(found, [table, *commands, about], as_json=as_json)
+    print_report(report, [table, *commands, about], as_json=as_json)
     return 0 if right == len(rows) else 1
 
 

@@ -229,8 +229,8 @@ def _failures_text(
 ) -> str:
     if total == 1:
         return str(failures[0]["error"])
-    told = without_result_words(missing, total, sum(f["outcome"] == "no_answer" for f in failures))
-    return f"{told}; run again with --out {folder.path} to go on; the first: {failures[0]['error']}"
+    text = without_result_words(missing, total, sum(f["outcome"] == "no_answer" for f in failures))
+    return f"{text}; run again with --out {folder.path} to go on; the first: {failures[0]['error']}"
 
 
 def _parts(run: _Run, cells: Sequence[RunCell], warned: Mapping[str, str]) -> Iterator[Printed]:

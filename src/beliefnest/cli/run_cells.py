@@ -74,12 +74,12 @@ class RunCell(Cell):
                 place.write_probe(number, probe)
             with Journal.read(place.store) as journal:
                 picture = read_condition(nest, journal, outcome)
-            told = accounts(nest, outcome)
+            reports = accounts(nest, outcome)
             figure = overview([picture], picture.title)
             figure.save(place.picture)
             replace_file(place.picture_svg, figure._repr_html_())
             readings = {"readings": _readings(nest)} if "claims_from" in self.key.setting else {}
-        result = {**outcome_json(outcome, self.key.model, place.path, told), **readings}
+        result = {**outcome_json(outcome, self.key.model, place.path, reports), **readings}
         place.write_result(result)
         self.pictures.append(picture)
         return {"error": None, **result}
@@ -108,7 +108,7 @@ def plan_run_cells(
     models, repeats = setting["models"], setting["repeat"]
     pictures: list[ConditionPicture] = []
     flat = len(models) == 1 and repeats == 1
-    found = []
+    planned = []
     for repeat in range(1, repeats + 1):
         for number, model in enumerate(models, start=1):
             # The number separates models whose names differ only in special characters.
@@ -127,7 +127,7 @@ def plan_run_cells(
                 )
                 condition = "run" if key.condition is None else f"condition-{key.condition}"
                 place = ConditionFolder(folder.path / above / condition)
-                found.append(
+                planned.append(
                     RunCell(
                         key=key,
                         scenario=scenario,
@@ -137,4 +137,4 @@ def plan_run_cells(
                         pictures=pictures,
                     )
                 )
-    return found
+    return planned

@@ -206,7 +206,7 @@ class _MapEdits:
         elif "agent" in thing:
             wanted = str(thing["agent"])[:1].lower()
         else:
-            wanted = next((told for key, told in _LETTERS.items() if key in thing), "")
+            wanted = next((letters for key, letters in _LETTERS.items() if key in thing), "")
         taken = {str(key) for key in self._legend} | {_AIR}
         for character in wanted + string.ascii_letters + "%&+=*":
             if character not in taken and character.isprintable() and not character.isspace():
@@ -243,8 +243,8 @@ class _ListEdits:
             self._block(thing["block"], at, int(thing.get("height", 1)))
         else:
             self._remove_things(at)
-            told = {"container": "block", "sign": "text"}
-            entry = {told.get(key, key): value for key, value in thing.items()}
+            names = {"container": "block", "sign": "text"}
+            entry = {names.get(key, key): value for key, value in thing.items()}
             listed = self._content.setdefault(
                 "signs" if "sign" in thing else "containers", CommentedSeq()
             )
@@ -308,17 +308,17 @@ class _ListEdits:
 
     def _remove_things(self, at: Position) -> bool:
         """Remove containers, signs and places at a position; return True if there was one."""
-        found = False
+        is_found = False
         for key in ("containers", "signs"):
             listed = self._content.get(key, [])
             for entry in [each for each in listed if each.get("at") == list(at)]:
                 listed.remove(entry)
-                found = True
+                is_found = True
         places = self._content.get("places", {})
         for name in [name for name, place in places.items() if place == list(at)]:
             del places[name]
-            found = True
-        return found
+            is_found = True
+        return is_found
 
     def _remove_last(self, at: Position) -> bool:
         """Remove the last entry of blocks if it concerns only this position's column."""

@@ -187,10 +187,10 @@ def _names(address: str, port: int) -> set[str]:
 
 def _own_addresses() -> set[str]:
     try:
-        found = socket.getaddrinfo(socket.gethostname(), None)
+        addresses = socket.getaddrinfo(socket.gethostname(), None)
     except OSError:
         return set()
-    return {_host(str(each[4][0])) for each in found}
+    return {_host(str(each[4][0])) for each in addresses}
 
 
 def _host(address: str) -> str:

@@ -190,9 +190,9 @@ def _animated(simulator: PastSimulator, options: ShowOptions, nest: RecordedNest
 
 def chosen_ticks(changes: Sequence[int], end: int, most: int) -> list[int]:
     """Return at most `most` ticks, evenly chosen from `changes` up to the end, and the end."""
-    found = sorted({tick for tick in changes if tick < end})
-    step = max(1, -(-len(found) // max(1, most - 1)))
-    return [*found[::step], end]
+    changed = sorted({tick for tick in changes if tick < end})
+    step = max(1, -(-len(changed) // max(1, most - 1)))
+    return [*changed[::step], end]
 
 
 def _name_in(store: Path, run: Path) -> str:
@@ -259,20 +259,20 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
     if path != "/":
         containers.add_column("how that is known")
         agents.add_column("how that is known")
-    for place, held in sorted(state.containers.items()):
-        items = items_words(held.items, ids=True)
+    for place, content in sorted(state.containers.items()):
+        items = items_words(content.items, ids=True)
         name = container_name(place, scenario.setting)
-        is_all = "yes" if held.complete else "not known"
-        known = _how_known(state, held.basis, current=held.current)
-        containers.add_row(_foreign(name), items or "-", is_all, *known)
+        is_all = "yes" if content.complete else "not known"
+        grounds = _how_known(state, content.basis, current=content.current)
+        containers.add_row(_foreign(name), items or "-", is_all, *grounds)
     for name, agent in state.agents.items():
         where = (
             "unknown" if agent.position is None else named_place(agent.position, scenario.setting)
         )
         holds = (agent.equipment or {}).get("main_hand", "-")
         seen = "yes" if agent.current else "no"
-        known = _how_known(state, agent.basis, current=agent.current)
-        agents.add_row(titled(name), _foreign(where or "unknown"), seen, holds, *known)
+        grounds = _how_known(state, agent.basis, current=agent.current)
+        agents.add_row(titled(name), _foreign(where or "unknown"), seen, holds, *grounds)
     print_table(console, containers)
     print_table(console, agents)
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):
@@ -295,8 +295,8 @@ def _print_programs(programs: Sequence[ProgramRecord]) -> None:
         span = f"ticks {program.tick} to {program.tick + program.ticks}"
         ran = f"{span}: program of {program.agent}: {ended}"
         console.print(_foreign(ran), highlight=False)
-        for told in (*program.log, *(f"stopped at its end: {each}" for each in program.unfinished)):
-            console.print(_foreign(f"    {told}"), highlight=False)
+        for line in (*program.log, *(f"stopped at its end: {each}" for each in program.unfinished)):
+            console.print(_foreign(f"    {line}"), highlight=False)
 
 
 def _program_json(program: ProgramRecord) -> dict[str, object]:
@@ -319,13 +319,13 @@ def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
         return
     table = Table("asked at", "model", "attempt", "for", "answer", box=box.SIMPLE_HEAVY)
     for prompt in prompts:
-        given = f"no answer: {prompt.error}" if prompt.answer is None else prompt.answer
+        answer = f"no answer: {prompt.error}" if prompt.answer is None else prompt.answer
         cells = (
             str(prompt.tick),
             prompt.model,
             str(prompt.attempt),
             prompt.detail.get("task", ""),
-            given.strip(),
+            answer.strip(),
         )
         table.add_row(*map(_foreign, cells))
     print_table(stdout(), table)

@@ -36,22 +36,22 @@ def run_stats(options: StatsOptions) -> int:
     if options.where is not None:
         result = result.where(options.where)
     by = options.by or None
-    found: dict[str, Any] = {"summary": result.counted(result.checked(by or result.groups))}
+    report: dict[str, Any] = {"summary": result.counted(result.checked(by or result.groups))}
     if options.between:
-        found["differences"] = {name: result.compared(name, by) for name in options.between}
+        report["differences"] = {name: result.compared(name, by) for name in options.between}
     fits = _fits(result, options)
     if options.by and fits:
-        found["regressions"] = fits
+        report["regressions"] = fits
     elif fits:
-        (found["regression"],) = fits
+        (report["regression"],) = fits
     if options.positions:
-        found["positions"] = result.counted_positions(result.checked(by or result.position_groups))
+        report["positions"] = result.counted_positions(result.checked(by or result.position_groups))
     if options.figure is not None:
         _draw(result, options.figure, by)
-    parts = [*_parts(found, options.by or list(result.groups))]
+    parts = [*_parts(report, options.by or list(result.groups))]
     if options.figure is not None:
         parts.append(f"figure: {options.figure}")
-    print_report(found, parts, as_json=options.json)
+    print_report(report, parts, as_json=options.json)
     return 0
 
 
@@ -78,41 +78,41 @@ def _fits(result: StudyResult, options: StatsOptions) -> list[dict[str, Any]]:
     return [{**values, **fitted.plain()} for values, fitted in fits]
 
 
-def _parts(found: Mapping[str, Any], by: Sequence[str]) -> Iterator[Printed]:
+def _parts(report: Mapping[str, Any], by: Sequence[str]) -> Iterator[Printed]:
     shown = ["variations", "judged", "right", "accuracy", "low", "high", "interval"]
-    if any(group["chance"] is not None for group in found["summary"]):
+    if any(group["chance"] is not None for group in report["summary"]):
         shown.append("chance")
-    shown += [name for name in LOST if any(group[name] for group in found["summary"])]
-    yield from _shown("accuracy, with 95 % intervals", found["summary"], (*by, *shown))
-    for column, pairs in found.get("differences", {}).items():
+    shown += [name for name in LOST if any(group[name] for group in report["summary"])]
+    yield from _shown("accuracy, with 95 % intervals", report["summary"], (*by, *shown))
+    for column, pairs in report.get("differences", {}).items():
         yield from _shown(f"paired differences of accuracy: {column}", pairs)
-    alone = [found["regression"]] if "regression" in found else []
-    for told in found.get("regressions", alone):
+    alone = [report["regression"]] if "regression" in report else []
+    for regression in report.get("regressions", alone):
         yield from _regression_parts(
-            told, [f"{name} {told[name]}" for name in by] if not alone else []
+            regression, [f"{name} {regression[name]}" for name in by] if not alone else []
         )
-    if "positions" in found:
-        yield from _shown("options chosen, by position of the right one", found["positions"])
+    if "positions" in report:
+        yield from _shown("options chosen, by position of the right one", report["positions"])
 
 
-def _regression_parts(told: Mapping[str, Any], group: Sequence[str]) -> Iterator[Printed]:
-    counts = f"{told['rows']} rows, {counted(told['variations'], 'variation')}"
-    references = ", ".join(f"{name} {level}" for name, level in told["references"].items())
+def _regression_parts(fit: Mapping[str, Any], group: Sequence[str]) -> Iterator[Printed]:
+    counts = f"{fit['rows']} rows, {counted(fit['variations'], 'variation')}"
+    references = ", ".join(f"{name} {level}" for name, level in fit["references"].items())
     within = f" with {', '.join(group)}" if group else ""
     title = f"regression of right answers{within}: {counts}; reference {references}"
-    yield from _shown(title, told["terms"])
+    yield from _shown(title, fit["terms"])
     for name in ("correlation", "intercept_sd"):
-        if told.get(name) is not None:
-            yield f"{name.replace('_', ' ')}: {told[name]:.3g}"
-    if told["sound"]:
-        yield told["method"]
+        if fit.get(name) is not None:
+            yield f"{name.replace('_', ' ')}: {fit[name]:.3g}"
+    if fit["sound"]:
+        yield fit["method"]
         return
-    yield from (title, f"not sound, so without coefficients: {told['note']}")
-    other = told["substitute"]
+    yield from (title, f"not sound, so without coefficients: {fit['note']}")
+    other = fit["substitute"]
     if other is not None:
         yield from _shown("in its place", other["terms"])
         yield other["method"]
-    yield from _shown("accuracy at each combination of levels, with 95 % intervals", told["counts"])
+    yield from _shown("accuracy at each combination of levels, with 95 % intervals", fit["counts"])
 
 
 def _shown(title: str, rows: _Rows, columns: Sequence[str] | None = None) -> Iterator[Table]:
@@ -159,10 +159,10 @@ def run_power(options: PowerOptions) -> int:
         "difference": options.difference,
         "correlation": options.correlation,
     }
-    given = {name: value for name, value in assumed.items() if value is not None}
+    values = {name: value for name, value in assumed.items() if value is not None}
     with progress_on("power") as on_progress:
         on_progress("reading the study", 0, 0)
-        sources = _sources(options, given)
+        sources = _sources(options, values)
 
         def told(done: int, total: int) -> None:
             on_progress("simulating", done, total)
@@ -192,13 +192,13 @@ _NOTES = (
 )
 
 
-def _sources(options: PowerOptions, given: Mapping[str, float]) -> list[Any]:
+def _sources(options: PowerOptions, values: Mapping[str, float]) -> list[Any]:
     if options.study.is_dir():
-        if given:
-            name = next(iter(given))
+        if values:
+            name = next(iter(values))
             raise InputError(
                 f"--{name} is an assumption, and {options.study} has results to draw from; leave "
                 "it out, or give the study's file"
             )
         return StudyResult.read(options.study).power_sources(options.between)
-    return Study.load(options.study).power_sources(**given, between=options.between)
+    return Study.load(options.study).power_sources(**values, between=options.between)

@@ -46,10 +46,10 @@ def run_study(options: StudyOptions) -> int:
         BeliefNestError: The input is wrong, or cells have no result.
     """
     shard = _shard(options.shard)
-    given = options.requests
+    options_of_model = options.requests
     if options.system is not None:
-        given["system"] = str(options.system)
-    study = Study.load(options.study, options.claims_from, **given)
+        options_of_model["system"] = str(options.system)
+    study = Study.load(options.study, options.claims_from, **options_of_model)
     now = datetime.now()
     folder = options.out or Path("studies", f"{options.study.stem}-{now:%Y%m%d-%H%M%S}")
     with noted_warnings() as warned, progress_on(options.study.stem) as on_progress:
@@ -104,10 +104,10 @@ def played(
 def _shard(text: str | None) -> tuple[int, int] | None:
     if text is None:
         return None
-    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
-    if found is None:
+    match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+    if match is None:
         raise InputError(f"--shard is {text!r}; give it as I/N, such as 1/4")
-    return checked_shard((int(found[1]), int(found[2])))
+    return checked_shard((int(match[1]), int(match[2])))
 
 
 def _progress_text(progress: StudyProgress) -> str:
@@ -140,12 +140,12 @@ def _report(result: StudyResult, by: Sequence[str]) -> dict[str, Any]:
 
 def _parts(result: StudyResult, by: Sequence[str], warned: Mapping[str, str]) -> Iterator[Printed]:
     yield _table(by, result.counted(by))
-    told = [f"no answer: {why}" for why in dict.fromkeys(result.failed.values())]
-    told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
-    told += [*_lost_rounds(result.rows), *_not_read(result.rows), *warned.values()]
-    yield from told[:_MOST_TOLD]
-    if len(told) > _MOST_TOLD:
-        yield f"and {len(told) - _MOST_TOLD} more"
+    lines = [f"no answer: {why}" for why in dict.fromkeys(result.failed.values())]
+    lines += [f"left out: {_invalid_text(each)}" for each in result.invalid]
+    lines += [*_lost_rounds(result.rows), *_not_read(result.rows), *warned.values()]
+    yield from lines[:_MOST_TOLD]
+    if len(lines) > _MOST_TOLD:
+        yield f"and {len(lines) - _MOST_TOLD} more"
     copies = sum(row["copy_of"] is not None for row in result.rows)
     if copies:
         yield text_of_copies(copies)
@@ -158,13 +158,13 @@ def _lost_rounds(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     for row in rows:
         if row.get("lost_rounds"):
             lost.setdefault(row["policy"], []).append(row)
-    for policy, found in lost.items():
-        rounds = counted(sum(row["lost_rounds"] for row in found), "round")
-        first = json.loads(found[0]["failures"])[0]
-        episodes = counted(len(found), "episode")
-        outcomes = [name for row in found for name in json.loads(row["not_answered"] or "[]")]
-        told = unanswered_words(Counter(outcomes))
-        rounds += f" ({told})" if told else ""
+    for policy, own in lost.items():
+        rounds = counted(sum(row["lost_rounds"] for row in own), "round")
+        first = json.loads(own[0]["failures"])[0]
+        episodes = counted(len(own), "episode")
+        outcomes = [name for row in own for name in json.loads(row["not_answered"] or "[]")]
+        why = unanswered_words(Counter(outcomes))
+        rounds += f" ({why})" if why else ""
         yield f"{policy} gave no program in {rounds} of {episodes}; the first failure: {first}"
 
 
@@ -173,7 +173,7 @@ def _not_read(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     outcomes: dict[str, set[str]] = {}
     for row in rows:
         outcomes.setdefault(row.get("model", ""), set()).add(row["outcome"])
-    for model in (name for name, found in outcomes.items() if found == {"unread"}):
+    for model in (name for name, kinds in outcomes.items() if kinds == {"unread"}):
         first = next(row for row in rows if row["model"] == model)
         yield f"{model} gave no answer that could be read; the first: {first['why_not']}"
 
@@ -209,9 +209,9 @@ def _status(result: StudyResult) -> int:
     failed = result.failed
     if failed:
         counting = {row["cell"] for row in rows if row["ok"] is False} & failed.keys()
-        told = without_result_words(len(failed), len(result.plan["cells"]), len(counting))
+        summary = without_result_words(len(failed), len(result.plan["cells"]), len(counting))
         raise ModelError(
-            f"{told}; run the same command to try them again; the first: "
+            f"{summary}; run the same command to try them again; the first: "
             f"{next(iter(failed.values()))}"
         )
     return 0 if all(row["ok"] is not False for row in rows) else 1

@@ -51,22 +51,22 @@ def run_suite(options: SuiteOptions) -> int:
         return run_films(options, rows)
     if options.out is not None:
         raise InputError(f"--out is for films; the suite {options.name} writes no files")
-    found = read(options.path, rows)
-    if not isinstance(found, ReadStories):
+    read_stories = read(options.path, rows)
+    if not isinstance(read_stories, ReadStories):
         raise InputError(
-            f"the suite {options.name} read {type(found).__name__}, no ReadStories; see "
+            f"the suite {options.name} read {type(read_stories).__name__}, no ReadStories; see "
             "docs/plugins.md"
         )
-    stories = (found.whole() if options.strict else found.stories)[: options.limit]
+    stories = (read_stories.whole() if options.strict else read_stories.stories)[: options.limit]
     if not stories:
-        found.whole()
+        read_stories.whole()
         raise InputError(f"{options.path} holds no rows; there is nothing to ask")
     started = time.perf_counter()
     judged = _answer(stories, options)
-    report = _report(options, stories, found.unread, judged, time.perf_counter() - started)
-    parts = _parts(options, stories, found.unread, judged)
+    report = _report(options, stories, read_stories.unread, judged, time.perf_counter() - started)
+    parts = _parts(options, stories, read_stories.unread, judged)
     print_report(report, parts, as_json=options.json)
-    return 0 if all(each.ok for each in judged) and not found.unread else 1
+    return 0 if all(each.ok for each in judged) and not read_stories.unread else 1
 
 
 def _check_films(options: SuiteOptions) -> None:
@@ -122,7 +122,7 @@ def _reader(options: SuiteOptions) -> "ClaimsFromModel | None":
 
 def _needs_first(judged: Sequence[JudgedAnswer]) -> dict[int, Score]:
     scores = scores_by_order(judged, lambda each: each.needs_first)
-    return {order: found for order, found in scores.items() if order > 0}
+    return {order: of_order for order, of_order in scores.items() if order > 0}
 
 
 def _telling(judged: Sequence[JudgedAnswer], *, tells: bool) -> list[JudgedAnswer]:
@@ -170,11 +170,11 @@ def _notes(stories: Sequence[StoryItems]) -> list[str]:
 
 
 def _scores_json(scores: Mapping[int, Score]) -> dict[str, object]:
-    return {str(order): _score_json(found) for order, found in scores.items()}
+    return {str(order): _score_json(of_order) for order, of_order in scores.items()}
 
 
-def _score_json(found: Score) -> dict[str, object]:
-    return {"questions": found.questions, "right": found.right, "accuracy": found.accuracy}
+def _score_json(total: Score) -> dict[str, object]:
+    return {"questions": total.questions, "right": total.right, "accuracy": total.accuracy}
 
 
 def _miss_json(judged: JudgedAnswer) -> dict[str, object]:
@@ -203,8 +203,8 @@ def _parts(
     for tells, word in ((False, "none"), (True, "some")):
         part = _telling(judged, tells=tells)
         matters = _needs_first(part)
-        for order, found in scores_by_order(part).items():
-            cells = (*_cells(found), *_cells(matters.get(order, Score(0, 0))))
+        for order, of_order in scores_by_order(part).items():
+            cells = (*_cells(of_order), *_cells(matters.get(order, Score(0, 0))))
             table.add_row(word, str(order), *cells)
     total = score(each for each in judged if each.needs_first)
     table.add_row("all", "all", *_cells(score(judged)), *_cells(total))
@@ -227,7 +227,7 @@ def _parts(
             yield from (f"    {line}" for line in (*faults, *each.explanation))
 
 
-def _cells(found: Score) -> tuple[str, str]:
-    if found.accuracy is None:
+def _cells(total: Score) -> tuple[str, str]:
+    if total.accuracy is None:
         return "", ""
-    return str(found.questions), f"{found.accuracy:.1%}"
+    return str(total.questions), f"{total.accuracy:.1%}"

@@ -81,13 +81,13 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
 
             if isinstance(result.folder, ReportedRun):
                 on_progress("playing", 0, 0)
-                found = _reproduce_run(result, result.folder, again, trust=trust)
+                reproduction = _reproduce_run(result, result.folder, again, trust=trust)
             else:
-                found = reproduce_study(folder, again, jobs, told, trust=trust)
-        differences = [*damaged, *found.differences]
+                reproduction = reproduce_study(folder, again, jobs, told, trust=trust)
+        differences = [*damaged, *reproduction.differences]
         other = _other_versions(result.plan["versions"])
-    lines = _lines(found, differences, other)
-    print_report(_report(found, differences, other), lines, as_json=as_json)
+    lines = _lines(reproduction, differences, other)
+    print_report(_report(reproduction, differences, other), lines, as_json=as_json)
     return 1 if differences else 0
 
 
@@ -102,22 +102,22 @@ def _code_of(result: StudyRecord) -> list[Code]:
 
 
 def _report(
-    found: Reproduction, differences: Sequence[PairedDifference], other: Mapping[str, Any]
+    reproduction: Reproduction, differences: Sequence[PairedDifference], other: Mapping[str, Any]
 ) -> dict[str, Any]:
     return {
         "equal": not differences,
-        "cells": found.cells,
-        "left_out": found.left_out,
-        "rows": found.rows,
-        "compared": list(_compared(found)),
-        "not_compared": list(_not_compared(found)),
+        "cells": reproduction.cells,
+        "left_out": reproduction.left_out,
+        "rows": reproduction.rows,
+        "compared": list(_compared(reproduction)),
+        "not_compared": list(_not_compared(reproduction)),
         "differences": [each.plain() for each in differences],
         "other_versions": other,
     }
 
 
 def _lines(
-    found: Reproduction, differences: Sequence[PairedDifference], other: Mapping[str, Any]
+    reproduction: Reproduction, differences: Sequence[PairedDifference], other: Mapping[str, Any]
 ) -> Iterator[str]:
     for name, (before, now) in other.items():
         yield f"other version: {name} {before}, now {now}"
@@ -125,32 +125,32 @@ def _lines(
         yield each.text
     if len(differences) > _MOST_TOLD:
         yield f"and {len(differences) - _MOST_TOLD} more differences"
-    played = f"{counted(found.cells, 'cell')} played again without a model"
-    if found.left_out:
-        played += f" ({counted(found.left_out, 'cell')} without a recorded result left out)"
-    rows = counted(found.rows, "row")
+    played = f"{counted(reproduction.cells, 'cell')} played again without a model"
+    if reproduction.left_out:
+        played += f" ({counted(reproduction.left_out, 'cell')} without a recorded result left out)"
+    rows = counted(reproduction.rows, "row")
     if differences:
         yield f"NOT EQUAL: {counted(len(differences), 'difference')} in {rows}; {played}"
     else:
         yield f"equal: all of {rows}; {played}"
-    yield f"compared: {'; '.join(_compared(found))}"
-    yield f"not compared: {'; '.join(_not_compared(found))}"
+    yield f"compared: {'; '.join(_compared(reproduction))}"
+    yield f"not compared: {'; '.join(_not_compared(reproduction))}"
 
 
-def _compared(found: Reproduction) -> Iterator[str]:
+def _compared(reproduction: Reproduction) -> Iterator[str]:
     """Yield words for what was compared."""
     yield "the digest of each file with the manifest, if there is one"
     yield "rows.csv with the recorded results"
-    yield f"{counted(found.cells, 'cell')} with the same played again from the inputs inside"
+    yield f"{counted(reproduction.cells, 'cell')} with the same played again from the inputs inside"
 
 
-def _not_compared(found: Reproduction) -> Iterator[str]:
+def _not_compared(reproduction: Reproduction) -> Iterator[str]:
     """Yield words for what was not compared."""
     yield "answers of models with models: they are taken as recorded"
     yield "figures, pages and paragraphs with the rows: only their digests are checked"
     yield "wall times and costs"
-    if found.left_out:
-        yield f"{counted(found.left_out, 'cell')} without a recorded result"
+    if reproduction.left_out:
+        yield f"{counted(reproduction.left_out, 'cell')} without a recorded result"
 
 
 def _other_versions(recorded: Mapping[str, str]) -> dict[str, tuple[str, str]]:
@@ -233,8 +233,8 @@ def _differences(
     after = {key(each, each["model"]): each for each in again["runs"]}
     for number, before in enumerate(recorded["runs"]):
         where = f"run.json, runs.{number}"
-        known = key(before, models[before["model"]])
-        if known in failed:
-            yield PairedDifference(where, ERROR, None, failed[known])
+        cell = key(before, models[before["model"]])
+        if cell in failed:
+            yield PairedDifference(where, ERROR, None, failed[cell])
         else:
-            yield from differing_contents(before, after.get(known, {}), where, _OF_MACHINE)
+            yield from differing_contents(before, after.get(cell, {}), where, _OF_MACHINE)

@@ -219,17 +219,17 @@ def _loaded(
     if not isinstance(parameters, Mapping):
         raise InputError(f"parameters is {parameters!r:.100}; give values by name")
     if isinstance(scenario, str):
-        found = _named(scenario, condition, parameters)
+        made = _named(scenario, condition, parameters)
     elif parameters or condition is not None:
         raise InputError(
             "parameters are for names and files, as is condition; give the task or scenario its own"
         )
     elif isinstance(scenario, Scenario):
         has_goal = scenario.rules is not None and scenario.rules.goal != GoalEntry()
-        found = functools.partial(_same, Task.of(scenario)) if has_goal else scenario
+        made = functools.partial(_same, Task.of(scenario)) if has_goal else scenario
     else:
-        found = functools.partial(_same, scenario)
-    return found if isinstance(found, Scenario) else Instances(found, rounds, round_ticks)
+        made = functools.partial(_same, scenario)
+    return made if isinstance(made, Scenario) else Instances(made, rounds, round_ticks)
 
 
 def _named(

@@ -75,8 +75,8 @@ class Calls:
         sizes |= {"position": 1, "count": MOST_ITEMS, "phrase": len(bounds.phrases)}
         # An agent cannot give or whisper to itself.
         sizes["agent"] = sizes["agent"] if sizes["agent"] > 1 else 0
-        known = callables()
-        actions = [known["doNothing"], *(each for each in known.values() if each.parts)]
+        skills = callables()
+        actions = [skills["doNothing"], *(each for each in skills.values() if each.parts)]
         self._lacking = {
             each.name: [part for part in each.parts if not sizes[part]] for each in actions
         }
@@ -85,13 +85,13 @@ class Calls:
         used = {part for each in self.possible for part in each.parts}
         self.parts = {part: size for part, size in sizes.items() if part in used}
 
-    def action(self, things: Things, skill: str, given: Mapping[str, object]) -> NamedAction:
+    def action(self, things: Things, skill: str, parts_named: Mapping[str, object]) -> NamedAction:
         """Return an action of the space from names and positions.
 
         Args:
             things: The things that the agent knows, in its order.
             skill: Name of the skill.
-            given: `position`, `container`, `door`, `lever`, `button` and `sign` as block
+            parts_named: `position`, `container`, `door`, `lever`, `button` and `sign` as block
                 positions; `item`, `agent` and `phrase` as names or texts; `count` (default 1).
 
         Raises:
@@ -108,7 +108,7 @@ class Calls:
             )
         index = self.skills.index(skill)
         needs = self.possible[index].parts
-        parts = {"count": 1, **given} if "count" in needs else dict(given)
+        parts = {"count": 1, **parts_named} if "count" in needs else dict(parts_named)
         if parts.keys() != set(needs):
             raise InputError(f"{skill} takes {', '.join(needs) or 'nothing'}; got {sorted(parts)}")
         action: dict[str, Any] = {
@@ -136,14 +136,14 @@ class Calls:
             if not isinstance(value, int | np.integer) or not 1 <= value <= MOST_ITEMS:
                 raise InputError(f"count is {value!r}; give 1 to {MOST_ITEMS}")
             return np.int64(value)
-        known = self.known(things, part)
-        if value not in known:
-            there = ", ".join(map(str, known)) or "none"
+        values = self.known(things, part)
+        if value not in values:
+            there = ", ".join(map(str, values)) or "none"
             raise UnknownNameError(
                 f"{value!r} is not among the {KIND_OF_PART[part]} that the agent knows, which are "
                 f"{there}"
             )
-        return np.int64(known.index(value))
+        return np.int64(values.index(value))
 
     def read(self, things: Things, action: Mapping[str, Any]) -> Call:
         """Return the call that an action stands for.
@@ -184,15 +184,15 @@ class Calls:
             return index
         if index >= self.parts[part]:
             raise IndexError(f"{part} {index} of {self.parts[part]}")
-        known = self.known(things, part)
-        if index >= len(known):
+        values = self.known(things, part)
+        if index >= len(values):
             raise NotKnownError(f"it knows no {part} {index} so far")
-        return known[index]
+        return values[index]
 
     def known(self, things: Things, part: str) -> tuple[Any, ...]:
         """Return the things, or the phrases, that a part of an action numbers."""
-        known = self._bounds.phrases if part == "phrase" else getattr(things, KIND_OF_PART[part])
-        return tuple(known)
+        values = self._bounds.phrases if part == "phrase" else getattr(things, KIND_OF_PART[part])
+        return tuple(values)
 
     def _position(self, index: Any) -> Position:
         low, shape = self._bounds.box.low, self._bounds.box.shape

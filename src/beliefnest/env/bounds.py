@@ -77,17 +77,17 @@ class SpaceBounds:
     nested: tuple[int, int] = (0, 0)
 
     @classmethod
-    def of(cls, layouts: Iterable[ThingsLayout], given: Mapping[str, int]) -> "SpaceBounds":
+    def of(cls, layouts: Iterable[ThingsLayout], sizes: Mapping[str, int]) -> "SpaceBounds":
         """Return the least bounds of several instances.
 
         Args:
             layouts: Layouts of instances.
-            given: Greatest numbers by kind, which replace those of the instances.
+            sizes: Greatest numbers by kind, which replace those of the instances.
 
         Raises:
             InputError: A kind does not exist, a number is below 0, or boxes differ.
         """
-        for kind, number in given.items():
+        for kind, number in sizes.items():
             if kind not in KINDS:
                 raise InputError(f"sizes names {kind!r}; kinds are {', '.join(KINDS)}")
             if isinstance(number, bool) or not isinstance(number, int) or number < 0:
@@ -96,7 +96,7 @@ class SpaceBounds:
         counts = [each.counts for each in (first, *others)]
         most = {kind: max(each[kind] for each in counts) for kind in KINDS}
         most["places"] = max(len(each.places) for each in (first, *others))
-        bounds = cls(first.box, {**most, **given}, first.phrases)
+        bounds = cls(first.box, {**most, **sizes}, first.phrases)
         for each in others:
             bounds.check_box(each)
         return bounds
@@ -176,24 +176,24 @@ class SpaceBounds:
             InputError: There is no room for a thing that has come to be known.
         """
         self._check_room(order.things)
-        found = _blank(self.own_shapes())
-        found["tick"][...] = state.tick
-        found["me"][...] = order.number("agents", state.owner) or 0
-        _tell_agents(found, order, state)
-        _tell_containers(found, order, state)
+        arrays = _blank(self.own_shapes())
+        arrays["tick"][...] = state.tick
+        arrays["me"][...] = order.number("agents", state.owner) or 0
+        _tell_agents(arrays, order, state)
+        _tell_containers(arrays, order, state)
         for first, states in state.blocks.terrain.slabs():
-            found["blocks"][first : first + len(states)] = block_classes()[states]
+            arrays["blocks"][first : first + len(states)] = block_classes()[states]
         things = order.things
-        for name in found.keys() & _MOVED:
+        for name in arrays.keys() & _MOVED:
             for row, place in enumerate(getattr(things, name)):
-                found[name][row] = moved_state(state.blocks.terrain[state.box.index(place)])
-        if "signs" in found:
+                arrays[name][row] = moved_state(state.blocks.terrain[state.box.index(place)])
+        if "signs" in arrays:
             for row, place in enumerate(things.signs):
-                found["signs"][row] = self._written(state.signs.get(place))
+                arrays["signs"][row] = self._written(state.signs.get(place))
         for _, speaker, text in lines:
             column = self.phrases.index(text) if text in self.phrases else len(self.phrases)
-            found["heard"][order.number("agents", speaker), column] += 1
-        return found
+            arrays["heard"][order.number("agents", speaker), column] += 1
+        return arrays
 
     def with_nested(
         self, own: Arrays, order: KnownOrder, beliefs: Mapping[BeliefPath, Arrays]
@@ -204,14 +204,14 @@ class SpaceBounds:
         """
         if not self.nested[0]:
             return own
-        found = {**_blank(self.shapes()), **own}
+        arrays = {**_blank(self.shapes()), **own}
         for path, row in order.rows(beliefs).items():
             numbers = [order.number("agents", name) for name in path[1:]]
-            found["beliefs"][row, : len(numbers)] = numbers
+            arrays["beliefs"][row, : len(numbers)] = numbers
             for name, array in beliefs[path].items():
                 if name not in _OF_OBSERVER:
-                    found[_BELOW + name][row] = array
-        return found
+                    arrays[_BELOW + name][row] = array
+        return arrays
 
     def _check_room(self, things: Things) -> None:
         for kind, count in things.counts.items():
@@ -230,8 +230,8 @@ class SpaceBounds:
         """
         if not text:
             return -1 if text is None else 0
-        known = text in self.phrases
-        return 1 + (self.phrases.index(text) if known else len(self.phrases))
+        is_phrase = text in self.phrases
+        return 1 + (self.phrases.index(text) if is_phrase else len(self.phrases))
 
 
 def _blank(shapes: Mapping[str, ArrayShape]) -> Arrays:
@@ -242,26 +242,26 @@ def _blank(shapes: Mapping[str, ArrayShape]) -> Arrays:
     }
 
 
-def _tell_agents(found: Arrays, order: KnownOrder, state: State) -> None:
+def _tell_agents(arrays: Arrays, order: KnownOrder, state: State) -> None:
     for row, name in enumerate(order.things.agents):
         agent = state.agents[name]
         if agent.position is not None:
-            found["agents"][row] = (*agent.position, agent.yaw, agent.pitch)
-            found["agents_known"][row] = (1, agent.current)
+            arrays["agents"][row] = (*agent.position, agent.yaw, agent.pitch)
+            arrays["agents_known"][row] = (1, agent.current)
         if agent.basis is not None:
-            found["agents_seen"][row] = agent.basis.observed_at
-        found["inventories_complete"][row] = agent.inventory_complete
-        _count(found["inventories"][row], order, agent.inventory)
+            arrays["agents_seen"][row] = agent.basis.observed_at
+        arrays["inventories_complete"][row] = agent.inventory_complete
+        _count(arrays["inventories"][row], order, agent.inventory)
 
 
-def _tell_containers(found: Arrays, order: KnownOrder, state: State) -> None:
+def _tell_containers(arrays: Arrays, order: KnownOrder, state: State) -> None:
     beliefs = state.containers
     for row, place in enumerate(order.things.containers):
-        known = beliefs.get(place)
-        if known is not None:
-            found["containers_known"][row] = (1, known.complete, known.current)
-            found["containers_seen"][row] = known.basis.observed_at
-            _count(found["containers"][row], order, known.items)
+        content = beliefs.get(place)
+        if content is not None:
+            arrays["containers_known"][row] = (1, content.complete, content.current)
+            arrays["containers_seen"][row] = content.basis.observed_at
+            _count(arrays["containers"][row], order, content.items)
 
 
 def _count(row: npt.NDArray[Any], order: KnownOrder, items: Mapping[str, int]) -> None:

@@ -321,8 +321,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             InputError: No episode has begun, the agent does not act now, or this is no task.
         """
         if not isinstance(self._acting, TaskActing):
-            told = "call reset() first" if self._acting is None else "only tasks have rounds"
-            raise InputError(f"there is no view of {agent!r}: {told}")
+            reason = "call reset() first" if self._acting is None else "only tasks have rounds"
+            raise InputError(f"there is no view of {agent!r}: {reason}")
         if agent not in self.agents:
             raise InputError(f"{agent!r} does not act now; agents are {self.agents}")
         return self._acting.view(agent)
@@ -435,11 +435,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             agent: KnownOrder(Things(items=tuple(self._declared(agent)))) for agent in self.agents
         }
         self._cells = {agent: self._cells_of(self._task, agent) for agent in self.agents}
-        told = self._told({agent: ActionState() for agent in self.agents}, spoken=True)
+        first = self._told({agent: ActionState() for agent in self.agents}, spoken=True)
         self._left = self._reality()
         if self.render_mode == "human":
             self.render()
-        return told
+        return first
 
     def calls(self, agent: str) -> tuple[Call | None, ...]:
         """Return what each number of the space `flat` stands for now; None: nothing known.
@@ -448,13 +448,13 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             InputError: No episode has begun, or the agent cannot act.
         """
         mind = self._mind(agent)
-        found: list[Call | None] = []
+        calls: list[Call | None] = []
         for number in range(len(self._flat.offers)):
             try:
-                found.append(self._flat.call(number, mind))
+                calls.append(self._flat.call(number, mind))
             except NotKnownError:
-                found.append(None)
-        return tuple(found)
+                calls.append(None)
+        return tuple(calls)
 
     def action_masks(self, agent: str | None = None) -> npt.NDArray[np.int8]:
         """Return 1 for each action of the space `flat` that can begin as far as its agent knows.
@@ -510,16 +510,16 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             BodyError: The Minecraft side failed.
         """
         if not isinstance(saved, SavedEpisode) or saved.scenario != self._named:
-            found = saved.scenario if isinstance(saved, SavedEpisode) else type(saved).__name__
+            name = saved.scenario if isinstance(saved, SavedEpisode) else type(saved).__name__
             raise InputError(
-                f"{found!r} is not an episode of {self._named}; give what save() returned"
+                f"{name!r} is not an episode of {self._named}; give what save() returned"
             )
-        told = self.reset(saved.seed)
+        latest = self.reset(saved.seed)
         for chosen in saved.steps:
-            told = self._play(chosen)
+            latest = self._play(chosen)
         if saved.steps and any(self._ends()):
             self.agents = []
-        return told
+        return latest
 
     def _reality(self) -> TimelineInfo:
         """Return how long the timeline of the real world is."""
@@ -663,10 +663,10 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """
         state, order = self.nest["/"].state, KnownOrder(self.layout)
         order.note(state)
-        told = self._form(order, state, ())
+        observation = self._form(order, state, ())
         if self._options.observations == "dict":
-            return told
-        return spaces.flatten(_space_of(self._bounds.own_shapes()), told)
+            return observation
+        return spaces.flatten(_space_of(self._bounds.own_shapes()), observation)
 
     def close(self) -> None:
         """End the episode and close the world."""
@@ -708,13 +708,13 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             # Deepest paths first: computing a belief also computes those above it.
             below = {p: self._belief(p, spoken=spoken) for p in self._nested_of[agent]}
             own = self._belief((agent,), spoken=spoken)
-            told = {path_text(path): each for path, each in below.items()}
-            if told:
-                infos[agent]["beliefs"] = told
+            beliefs = {path_text(path): each for path, each in below.items()}
+            if beliefs:
+                infos[agent]["beliefs"] = beliefs
             if self._options.observations == "arrays":
                 observations[agent] = self._bounds.with_nested(own, self._orders[agent], below)
             else:
-                observations[agent] = {**own, "beliefs": told} if told else own
+                observations[agent] = {**own, "beliefs": beliefs} if beliefs else own
             if self._options.actions == "flat":
                 mask = self.action_masks(agent)
                 infos[agent]["action_mask"] = mask
@@ -726,9 +726,9 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         state = self.nest[text].state
         lines: Sequence[tuple[int, str, str]] = ()
         if spoken:
-            known = self._heard.get(text, 0)
+            read_before = self._heard.get(text, 0)
             self._heard[text] = len(state.chat)
-            lines = state.chat[known:]
+            lines = state.chat[read_before:]
         self._orders[path[0]].note(state)
         return self._form(self._orders[path[0]], state, lines)
 
@@ -778,17 +778,17 @@ def _nested(
 ) -> tuple[tuple[str, ...], ...]:
     """Return the paths of the beliefs for the infos, the deepest first."""
     if isinstance(nested, int):
-        found = {
+        chosen = {
             path
             for agent in acting
             for path in paths_below((agent,), max(0, nested - 1), agents)[1:]
         }
     else:
-        found = {parse_path(path, agents) for path in nested}
-        for path in found:
+        chosen = {parse_path(path, agents) for path in nested}
+        for path in chosen:
             if len(path) < 2 or path[0] not in acting:
                 raise PathError(
                     f"{path_text(path)!r} is not a belief of an acting agent about another's; "
                     f"name one such as /{acting[0]}/{agents[-1]}"
                 )
-    return tuple(sorted(found, key=lambda path: (-len(path), path)))
+    return tuple(sorted(chosen, key=lambda path: (-len(path), path)))

@@ -123,9 +123,9 @@ class FlatActions:
             case "placeItem", {"item": item, "cell": cell}:
                 return Call("placeItem", (item, cell))
             case "say" | "whisper", {"container": _} | {"cell": _}:
-                told = said(_claim(named, mind)).args
+                arguments = said(_claim(named, mind)).args
                 hearer = [named["agent"]] if "agent" in named else []
-                return Call(offer.skill, (*hearer, *told))
+                return Call(offer.skill, (*hearer, *arguments))
         return self._calls.action(mind.things, offer.skill, named).call
 
     def mask(self, mind: ActorMind) -> npt.NDArray[np.int8]:
@@ -151,19 +151,19 @@ class FlatActions:
 
     def _named(self, offer: Offer, mind: ActorMind) -> Mapping[str, Any]:
         """Return the things that an action is about, by part."""
-        found = {}
+        things = {}
         for part, number in offer.parts:
             own = {"place": mind.places, "cell": mind.cells}
-            known = own[part] if part in own else self._calls.known(mind.things, part)
-            if number >= len(known):
+            values = own[part] if part in own else self._calls.known(mind.things, part)
+            if number >= len(values):
                 raise NotKnownError(f"it knows no {part} {number} so far")
-            found[part] = known[number]
-        return found
+            things[part] = values[number]
+        return things
 
 
 def checked_cells(cells: Sequence[Any], box: Box) -> tuple[Position, ...]:
     """Return cells that a user has named; raise InputError if one is no cell of a box."""
-    found = []
+    places = []
     for cell in cells:
         try:
             x, y, z = map(operator.index, cell)
@@ -171,8 +171,8 @@ def checked_cells(cells: Sequence[Any], box: Box) -> tuple[Position, ...]:
             raise InputError(f"cells has {cell!r:.100}; give three whole numbers each") from None
         if (x, y, z) not in box:
             raise InputError(f"cells has {(x, y, z)}, outside the box {box.low}..{box.high}")
-        found.append((x, y, z))
-    return tuple(found)
+        places.append((x, y, z))
+    return tuple(places)
 
 
 def _offers(calls: Calls, most: Mapping[str, int], *, speaks: bool) -> Iterator[Offer]:
@@ -244,8 +244,8 @@ def _lacks(skill: str, named: Mapping[str, Any], state: State) -> bool:
     there = state.blocks[named["cell"]] if "cell" in named else None
     match skill:
         case "getItemFromChest":
-            known = state.containers.get(named["container"])
-            return known is not None and known.complete and not known.items.get(item, 0)
+            content = state.containers.get(named["container"])
+            return content is not None and content.complete and not content.items.get(item, 0)
         case "depositItemIntoChest":
             return not me.inventory.get(item, 0)
         case "mineBlock":

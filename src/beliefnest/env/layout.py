@@ -28,13 +28,13 @@ def layout_of(setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> 
     for claims in phrases.values():
         for claim in claims:
             claim.check(snapshot.box, agents)
-    held = [agent.inventory for agent in snapshot.agents.values()]
-    held += list(snapshot.containers.values())
+    contents = [agent.inventory for agent in snapshot.agents.values()]
+    contents += list(snapshot.containers.values())
     worn = {name for agent in snapshot.agents.values() for name in agent.equipment.values()}
     placed = {k: tuple(snapshot.places(states)) for k, states in placed_states().items()}
     return ThingsLayout(
         agents=agents,
-        items=tuple(sorted({*items, *worn, *(name for each in held for name in each)})),
+        items=tuple(sorted({*items, *worn, *(name for each in contents for name in each)})),
         **placed,
         box=snapshot.box,
         phrases=tuple(phrases),

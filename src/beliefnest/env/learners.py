@@ -35,8 +35,8 @@ class LearnerEnv(VecEnv):  # type: ignore[misc]  # not installed where types are
 
     def step_wait(self) -> tuple[Any, Any, Any, list[dict[str, Any]]]:
         """Let all agents act; return observations, rewards, ends and infos of all rows."""
-        told = self._env.advance(self._actions)
-        rows = [told[row] for row in self._env.rows]
+        steps = self._env.advance(self._actions)
+        rows = [steps[row] for row in self._env.rows]
         over = np.array([each.is_over for each in rows])
         infos = [each.info for each in rows]
         for number in np.flatnonzero(over):
@@ -75,8 +75,8 @@ class LearnerEnv(VecEnv):  # type: ignore[misc]  # not installed where types are
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
         """Return what a method that has a value for each row returns: `action_masks`, `render`."""
-        found = getattr(self._env, method_name)(*method_args, **method_kwargs)
-        return [found[number] for number in self._get_indices(indices)]
+        results = getattr(self._env, method_name)(*method_args, **method_kwargs)
+        return [results[number] for number in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
         """Return False for each row: their environments have no wrappers."""

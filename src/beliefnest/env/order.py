@@ -62,12 +62,12 @@ BLOCK_CLASSES = ("free", "solid", *PLACED)
 def block_classes() -> npt.NDArray[np.int8]:
     """Return the class of each block state, by state number; the last one is for the unknown."""
     registry = Registry.load()
-    found = np.full(len(registry.state_shape) + 1, -1, np.int8)
+    classes = np.full(len(registry.state_shape) + 1, -1, np.int8)
     for name in registry.block_names:
         kind = _kind_of(registry, name) or ("solid" if registry.is_solid(name) else "free")
         states = registry.state_ids(name)
-        found[states.start : states.stop] = BLOCK_CLASSES.index(kind)
-    return found
+        classes[states.start : states.stop] = BLOCK_CLASSES.index(kind)
+    return classes
 
 
 @cache
@@ -82,16 +82,16 @@ def moved_state(state: int) -> int:
 def placed_states() -> Mapping[str, tuple[int, ...]]:
     """Return by kind the block states of things that are blocks."""
     registry = Registry.load()
-    found: dict[str, list[int]] = {kind: [] for kind in PLACED}
+    kinds: dict[str, list[int]] = {kind: [] for kind in PLACED}
     for name in registry.block_names:
         kind = _kind_of(registry, name)
         if kind is not None:
-            found[kind] += registry.state_ids(name)
+            kinds[kind] += registry.state_ids(name)
     # Leave upper halves of doors out: they move together with the lower ones.
-    found["doors"] = [
-        state for state in found["doors"] if registry.properties(state).get("half") != "upper"
+    kinds["doors"] = [
+        state for state in kinds["doors"] if registry.properties(state).get("half") != "upper"
     ]
-    return {kind: tuple(states) for kind, states in found.items()}
+    return {kind: tuple(states) for kind, states in kinds.items()}
 
 
 def _kind_of(registry: Registry, name: str) -> str | None:
@@ -130,7 +130,7 @@ class KnownOrder:
     @property
     def things(self) -> Things:
         """The things by now, in order."""
-        return Things(**{kind: tuple(known) for kind, known in self._known.items()})
+        return Things(**{kind: tuple(numbers) for kind, numbers in self._known.items()})
 
     def number(self, kind: str, thing: object) -> int | None:
         """Return the number of a thing; None: the beliefs have had no such thing so far."""
@@ -162,34 +162,34 @@ class KnownOrder:
                 self._add(kind, [(x + i, y + j, z + k) for i, j, k in cells])
 
     def _add(self, kind: str, things: Iterable[Any]) -> None:
-        known = self._known[kind]
-        for thing in sorted({*things} - known.keys()):
-            known[thing] = len(known)
+        numbers = self._known[kind]
+        for thing in sorted({*things} - numbers.keys()):
+            numbers[thing] = len(numbers)
 
 
 def _agents_in(state: State, said: int) -> set[str]:
     """Return the agents that a simulator has perceived or heard; `said`: lines known before."""
-    found = {
+    names = {
         name
         for name, agent in state.agents.items()
         if agent.position is not None or agent.basis is not None or agent.inventory
     }
-    found |= {speaker for _, speaker, _ in state.chat[said:]}
+    names |= {speaker for _, speaker, _ in state.chat[said:]}
     # The holder of an order knows itself; whom its nested beliefs are about it may not know.
-    return found | {*state.path} if len(state.path) == 1 else found
+    return names | {*state.path} if len(state.path) == 1 else names
 
 
 def _items_in(state: State) -> set[str]:
     """Return the items that a simulator believes to exist."""
-    found = {name for each in state.containers.values() for name in each.items}
+    names = {name for each in state.containers.values() for name in each.items}
     for agent in state.agents.values():
-        found |= {*agent.inventory, *(agent.equipment or {}).values()}
-    return found | {each.name for each in state.items.values()}
+        names |= {*agent.inventory, *(agent.equipment or {}).values()}
+    return names | {each.name for each in state.items.values()}
 
 
-def _is_same(known: Terrain, blocks: Terrain) -> bool:
+def _is_same(former: Terrain, blocks: Terrain) -> bool:
     """Return True if two terrains are the same; False if that would take long to find out."""
-    if known is blocks:
+    if former is blocks:
         return True
-    both_small = known.is_dense and blocks.is_dense
-    return both_small and np.array_equal(known.dense(), blocks.dense())
+    both_small = former.is_dense and blocks.is_dense
+    return both_small and np.array_equal(former.dense(), blocks.dense())

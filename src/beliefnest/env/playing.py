@@ -43,8 +43,8 @@ class Instances:
         """
         task = self.load(seed)
         changes = {"rounds": self.rounds, "round_ticks": self.round_ticks}
-        given = {name: value for name, value in changes.items() if value is not None}
-        return replace(task, form=msgspec.structs.replace(task.form, **given)) if given else task
+        edits = {name: value for name, value in changes.items() if value is not None}
+        return replace(task, form=msgspec.structs.replace(task.form, **edits)) if edits else task
 
 
 class Chooser:

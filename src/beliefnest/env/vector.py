@@ -71,20 +71,20 @@ class CopiesShare(gymnasium.Env[Any, Any]):
 
     def advance(self, jobs: _Jobs) -> dict[_Row, RowStep]:
         """Begin episodes, and step those that go on."""
-        told: dict[_Row, RowStep] = {}
+        steps: dict[_Row, RowStep] = {}
         for number in self._copies:
             if number in jobs:
-                told |= self._advanced(number, jobs[number])
-        return told
+                steps |= self._advanced(number, jobs[number])
+        return steps
 
     def pictures(self) -> dict[int, Any]:
         """Return the picture of each copy, as their mode says."""
         return {number: self._env(number).render() for number in self._copies}
 
-    def answer(self, name: str, *given: Any) -> Any:
+    def answer(self, name: str, *arguments: Any) -> Any:
         """Return what a method returns, or an error that is not one of this process."""
         try:
-            return getattr(self, name)(*given)
+            return getattr(self, name)(*arguments)
         except BeliefNestError as error:
             return error
 
@@ -183,13 +183,13 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         chosen = self._masked(others.pop("reset_mask", np.ones(self.num_envs, np.bool_)))
         check_no_options(others)
         if seed is not None:
-            given = self._seeds_from(seed)
+            seeds = self._seeds_from(seed)
             self._seeds = [
                 new if number in chosen else old
-                for number, (new, old) in enumerate(zip(given, self._seeds, strict=True))
+                for number, (new, old) in enumerate(zip(seeds, self._seeds, strict=True))
             ]
-        told = self._advance({number: self._seeds[number] for number in chosen})
-        return self.batch(), self._infos(told)
+        steps = self._advance({number: self._seeds[number] for number in chosen})
+        return self.batch(), self._infos(steps)
 
     def step(self, actions: Any) -> tuple[Any, npt.NDArray[np.float64], _Flags, _Flags, Any]:
         """Let all agents of all copies act; see PettingZoo's parallel interface.
@@ -198,12 +198,12 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
             InputError: No episode has begun, or an action is not in the space.
             WorkerError: A process has ended.
         """
-        told = self.advance(actions)
+        steps = self.advance(actions)
         rows = [self._latest[row] for row in self.rows]
         rewards = np.array([each.reward for each in rows], np.float64)
         ended = np.array([each.is_ended for each in rows], np.bool_)
         cut = np.array([each.is_cut for each in rows], np.bool_)
-        return self.batch(), rewards, ended, cut, self._infos(told)
+        return self.batch(), rewards, ended, cut, self._infos(steps)
 
     def advance(self, actions: Any) -> dict[_Row, RowStep]:
         """Do what `step` does; return what the agent of each row was told."""
@@ -257,13 +257,13 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
             except (EOFError, OSError):  # one has ended already
                 _end(self._workers)
 
-    def _ask(self, name: str, *given: Any) -> Sequence[Any]:
+    def _ask(self, name: str, *arguments: Any) -> Sequence[Any]:
         """Return what a method of each share returns."""
         if self._workers is None:
-            return [getattr(self._share, name)(*given)]
+            return [getattr(self._share, name)(*arguments)]
         answers: Sequence[Any] | None = None
         try:
-            answers = self._workers.call("answer", name, *given)
+            answers = self._workers.call("answer", name, *arguments)
         except (EOFError, OSError) as error:
             raise WorkerError(
                 f"a process that steps copies has ended ({type(error).__name__}), so all were "
@@ -279,21 +279,21 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _advance(self, jobs: _Jobs) -> dict[_Row, RowStep]:
         """Begin and step episodes; later ones of copies that began get the next seeds."""
-        told: dict[_Row, RowStep] = {}
+        steps: dict[_Row, RowStep] = {}
         for some in self._ask("advance", jobs):
-            told |= some
+            steps |= some
         for number, job in jobs.items():
             if isinstance(job, int):
                 self._seeds[number] += len(self._seeds)
-        self._latest |= told
-        return told
+        self._latest |= steps
+        return steps
 
-    def _infos(self, told: Mapping[_Row, RowStep]) -> dict[str, Any]:
+    def _infos(self, steps: Mapping[_Row, RowStep]) -> dict[str, Any]:
         """Return the infos of the rows that were told something, as Gymnasium has them."""
         infos: dict[str, Any] = {}
         for number, row in enumerate(self.rows):
-            if row in told:
-                infos = self._add_info(infos, told[row].info, number)
+            if row in steps:
+                infos = self._add_info(infos, steps[row].info, number)
         return infos
 
     def _masked(self, mask: Any) -> list[int]:

@@ -109,8 +109,8 @@ class Brief:
         if agent in self.goals:
             return str(self.goals[agent])
         possible = self.possible_goals.get(agent, {})
-        told = " or ".join(f"({goal})" for goal in possible.values())
-        return f"one of these, it is not known which: {told}" if told else "it is not known what"
+        goals = " or ".join(f"({goal})" for goal in possible.values())
+        return f"one of these, it is not known which: {goals}" if goals else "it is not known what"
 
     def supposing(self, goals: Mapping[str, Goal]) -> "Brief":
         """Return the brief for supposed goals of others that everybody knows.
@@ -119,9 +119,10 @@ class Brief:
             goals: Supposed goals by agent. An agent whose goal is neither known nor supposed is
                 assumed to have none.
         """
-        known = {name: goals.get(name, Goal()) for name in self.agents} | dict(self.goals)
+        supposed = {name: goals.get(name, Goal()) for name in self.agents} | dict(self.goals)
         helped = {
-            name: goal if goal.helps is None else known[goal.helps] for name, goal in known.items()
+            name: goal if goal.helps is None else supposed[goal.helps]
+            for name, goal in supposed.items()
         }
         return replace(self, goals=helped, possible_goals={})
 
@@ -229,10 +230,10 @@ class AgentView:
     @property
     def spoken(self) -> Mapping[str, frozenset[str]]:
         """Return all texts that the agent heard so far, its own too, by speaker."""
-        found: dict[str, set[str]] = {}
+        texts_of: dict[str, set[str]] = {}
         for _, speaker, text in self.state.chat:
-            found.setdefault(speaker, set()).add(text)
-        return {speaker: frozenset(texts) for speaker, texts in found.items()}
+            texts_of.setdefault(speaker, set()).add(text)
+        return {speaker: frozenset(texts) for speaker, texts in texts_of.items()}
 
     @property
     def claims(self) -> Sequence[tuple[int, str, Claim]]:

@@ -44,19 +44,19 @@ def chosen(
         if task.form.scenario["agents"][agent].get("type") == "human":
             by_itself = "person"
         own = task.form.policies.get(agent, by_itself)
-        given = policies.get(agent, own)
-        if not isinstance(given, str) and not callable(getattr(given, "act", None)):
+        policy = policies.get(agent, own)
+        if not isinstance(policy, str) and not callable(getattr(policy, "act", None)):
             raise InputError(
-                f"the policy of {agent} is {quoted(given)}; give the name of a policy, or an "
+                f"the policy of {agent} is {quoted(policy)}; give the name of a policy, or an "
                 "object with act(view)"
             )
-        names[agent] = name_of(given)
-        if isinstance(given, str):
-            if given.startswith("model:"):
+        names[agent] = name_of(policy)
+        if isinstance(policy, str):
+            if policy.startswith("model:"):
                 connection = connection or _connection(budget)
-            chosen[agent] = resolve_policy(given, None, connection)
+            chosen[agent] = resolve_policy(policy, None, connection)
         else:
-            chosen[agent] = given
+            chosen[agent] = policy
     return names, chosen
 
 

@@ -69,18 +69,18 @@ def told_trace(trace: SearchTrace) -> dict[str, Any]:
     }
 
 
-def considered_lines(told: Mapping[str, Any]) -> Sequence[str]:
+def considered_lines(considered: Mapping[str, Any]) -> Sequence[str]:
     """Return what `told_trace` returned in lines: the reckoned acts of others, the best courses."""
     lines = [
         f"expects that {name} does: {_flat(program) or 'nothing'}"
-        for name, program in told["others"].items()
+        for name, program in considered["others"].items()
     ]
     lines += [
         f"{number}. {words}: {_flat(program) or 'nothing'}"
-        for number, (program, words) in enumerate(told["courses"][:_COURSES_SHOWN], 1)
+        for number, (program, words) in enumerate(considered["courses"][:_COURSES_SHOWN], 1)
     ]
-    if told["reason"]:
-        lines.append(f"decided otherwise: {told['reason']}")
+    if considered["reason"]:
+        lines.append(f"decided otherwise: {considered['reason']}")
     return lines
 
 

@@ -97,8 +97,8 @@ class RoundPart(msgspec.Struct, frozen=True):
 
     def reason(self, agent: str) -> str:
         """Return why an agent's program failed, was cut or is missing; empty if it ended well."""
-        told = self.ended[agent].message if agent in self.ended else ""
-        return self.reasons.get(agent) or self.decisions[agent].fault or told
+        message = self.ended[agent].message if agent in self.ended else ""
+        return self.reasons.get(agent) or self.decisions[agent].fault or message
 
 
 @dataclass(frozen=True, slots=True)

@@ -143,21 +143,21 @@ class Episode:
         try:
             kept, branches = kept_in(nest)
             branch = branch or nest["/"].branch
-            known = branch_of(branches, branch)
+            recorded = branch_of(branches, branch)
             nest["/"].switch(branch)
-            given = {**known.policies, **(policies or {})}
-            check_resumable(given)
+            chosen = {**recorded.policies, **(policies or {})}
+            check_resumable(chosen)
             task = Task.from_mapping(kept.task, kept.task_seed)
             episode = cls(
                 task,
-                given,
+                chosen,
                 world=kept.world,
                 store=store,
                 seed=kept.seed,
                 budget=budget or kept.budget,
                 patience_s=patience_s,
             )
-            episode._take(nest, branch, kept.start, known.parts)
+            episode._take(nest, branch, kept.start, recorded.parts)
         except BaseException:
             nest.close()
             raise
@@ -289,11 +289,11 @@ class Episode:
     @property
     def measures(self) -> Measures:
         """Return the measures of the episode."""
-        found = measured(self)
+        measures = measured(self)
         if self._help is None:
-            return found
+            return measures
         return replace(
-            found,
+            measures,
             help_needed=len(self._help.needed),
             help_given=len(self._help.given),
             help_superfluous=len(self._help.superfluous),
@@ -314,8 +314,8 @@ class Episode:
         """
         check_repeats(self._world, "played again to measure help")
         if self._help is None:
-            told = replayed(self._parts, self.task.agents)
-            with Episode(self.task, told, world=self._world, seed=self.seed) as copy:
+            replays = replayed(self._parts, self.task.agents)
+            with Episode(self.task, replays, world=self._world, seed=self.seed) as copy:
                 copy.play(self.rounds)
                 self._help = help_in(copy, self._policies)
                 self._asker.model_errors += copy._asker.model_errors
@@ -363,8 +363,8 @@ class Episode:
                 nothing.
         """
         if agent not in self.task.agents:
-            known = ", ".join(self.task.agents)
-            raise InputError(f"there is no agent {agent!r}; agents are {known}")
+            names = ", ".join(self.task.agents)
+            raise InputError(f"there is no agent {agent!r}; agents are {names}")
         width = len(self._slots)
         decided = [
             part.decisions[agent]
@@ -453,10 +453,10 @@ class Episode:
         tick = beginnings[round] if self._people else self._start + round * self._brief.whole_round
         taken = {info.key.branch for info in nest["/"].branches()}
         number = next(n for n in range(1, len(taken) + 2) if f"fork {n}" not in taken)
-        given: dict[str, str | Policy] = {**self._policies, **policies}
+        chosen: dict[str, str | Policy] = {**self._policies, **policies}
         fork = type(self)(
             self.task,
-            given,
+            chosen,
             world=self._world,
             seed=self.seed,
             budget=self._budget,

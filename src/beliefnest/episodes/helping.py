@@ -149,14 +149,14 @@ def help_in(episode: Branching, policies: Mapping[str, Policy]) -> Help:
             alone = episode.forked(0, {**policies, **others}).play()
             if _done(alone, shares)[agent] == float("inf"):
                 needed.append(agent)
-    given = [agent for agent in needed if done[agent] < float("inf")]
+    helpers = [agent for agent in needed if done[agent] < float("inf")]
     acts = []
     for act in [act for agent in task.players for act in _acts(episode, agent)]:
         without = _Without(decided[act.agent], act.first, act.last)
         branch = episode.forked(act.first, {**policies, act.agent: without}).play()
         there = _done(branch, shares)
         acts.append(replace(act, worse=tuple(a for a in task.agents if there[a] > done[a])))
-    return Help(tuple(needed), tuple(given), tuple(acts))
+    return Help(tuple(needed), tuple(helpers), tuple(acts))
 
 
 def _done(episode: Branching, shares: Mapping[str, Share]) -> dict[str, float]:
@@ -172,12 +172,12 @@ def _acts(episode: Branching, agent: str) -> list[HelpingAct]:
     said = {tick for tick, speaker, _ in state.chat if speaker == agent} | gave
     own = [part for part in episode.parts if agent in part.decisions]
     ends = [*episode.beginnings[1:], episode.nest.tick]
-    found: list[HelpingAct] = []
+    acts: list[HelpingAct] = []
     first = 0
     for number, part in enumerate(own):
         first = first if part.decisions[agent].goes_on else number
         if any(episode.beginnings[number] < tick <= ends[number] for tick in said):
-            if found and found[-1].first == first:
-                found.pop()
-            found.append(HelpingAct(agent, first, number))
-    return found
+            if acts and acts[-1].first == first:
+                acts.pop()
+            acts.append(HelpingAct(agent, first, number))
+    return acts

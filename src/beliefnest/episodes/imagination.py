@@ -169,12 +169,12 @@ class Imagination:
         blocks = with_chests(registry, snapshot.box, believed.terrain, snapshot.containers)
         possible = embodiable(registry, snapshot, blocks)
         world = ScriptedWorld.from_snapshot(replace(possible, tick=tick))
-        known = {} if grounds is None else grounds
+        kept = {} if grounds is None else grounds
         speech = source.context.options.speech_ticks if speech_ticks is None else speech_ticks
         sight = source.context.sight
         unseen = frozenset(name for name, each in believed.agents.items() if not each.current)
         start = (unseen, {name: state.position for name, state in world.agents.items()})
-        return cls(forest, root, believed.terrain, world, known, news, sight, start, speech)
+        return cls(forest, root, believed.terrain, world, kept, news, sight, start, speech)
 
     @property
     def tick(self) -> int:
@@ -296,16 +296,16 @@ class Imagination:
             The copy, and the positions of the containers that are empty in it for that reason.
         """
         made = self.fork()
-        held = {place: dict(items) for place, items in made.world.containers.items()}
+        contents = {place: dict(items) for place, items in made.world.containers.items()}
         doubted = frozenset(
             place
             for place, content in made.view().containers.items()
             if content.basis.source is Source.HEARD and content.basis.speaker in speakers
         )
-        for place in doubted & held.keys():
-            held[place] = {}
+        for place in doubted & contents.keys():
+            contents[place] = {}
         if doubted:
-            made.world.set_state(replace(made.world.snapshot(), containers=held))
+            made.world.set_state(replace(made.world.snapshot(), containers=contents))
         return made, doubted
 
     def below(self, agent: str, depth: int) -> "Imagination":
@@ -437,12 +437,12 @@ class Imagination:
     def _standing(self) -> Ground:
         blocks = self.world.terrain
         if self._ground is None or self._ground[0] is not blocks:
-            known = blocks.joined(self._believed, _where_unknown)
-            if known.key not in self._grounds:
+            joined = blocks.joined(self._believed, _where_unknown)
+            if joined.key not in self._grounds:
                 if len(self._grounds) >= _MOST_GROUNDS:
                     self._grounds.clear()
-                self._grounds[known.key] = Ground(Registry.load(), self.world.box, known)
-            self._ground = (blocks, self._grounds[known.key])
+                self._grounds[joined.key] = Ground(Registry.load(), self.world.box, joined)
+            self._ground = (blocks, self._grounds[joined.key])
         return self._ground[1]
 
     def _is_lost(self, name: str) -> bool:

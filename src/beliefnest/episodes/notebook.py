@@ -44,15 +44,15 @@ class PageView:
             InputError: The depth is not from 0 to 4, or the page was not built with the package.
         """
         setting = self.reader.setting
-        told = [] if self.inference is None else [told_inference(self.inference, self.steps)]
+        inferences = [] if self.inference is None else [told_inference(self.inference, self.steps)]
         about = About(
             self._title,
             labels=setting.labels,
             episode=lambda: told_episode(self.run),
-            inferences=lambda: told,
+            inferences=lambda: inferences,
         )
         # Predictions are drawn on the plan.
-        first = {"view": "plan"} if told else None
+        first = {"view": "plan"} if inferences else None
         return still_page([(self.reader, about)], self.depth, first)
 
     @property

@@ -132,8 +132,8 @@ def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
     if fault.reason == NO_WAY:
         return Ended(decision.program, "no_way", str(fault))
     if fault.skill is not None:
-        told = Fault(f"{fault.skill} did not work", line=fault.line)
-        return Ended(decision.program, "failed", str(told))
+        shown = Fault(f"{fault.skill} did not work", line=fault.line)
+        return Ended(decision.program, "failed", str(shown))
     return Ended(decision.program, "failed", str(fault))
 
 

@@ -38,13 +38,13 @@ def told_episode(run: Keeps) -> dict[str, Any] | None:
     }
 
 
-def round_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+def round_rows(episode: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Yield a row for each agent in each round on each branch.
 
     Args:
-        told: Episode, as `told_episode` returns it.
+        episode: Episode, as `told_episode` returns it.
     """
-    for name, branch in told["branches"].items():
+    for name, branch in episode["branches"].items():
         for part in branch["parts"]:
             for done in part["agents"]:
                 yield {
@@ -63,9 +63,9 @@ def round_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
                 }
 
 
-def goal_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+def goal_rows(episode: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Yield a row for each condition of the goal on each branch; argument as in `round_rows`."""
-    for name, branch in told["branches"].items():
+    for name, branch in episode["branches"].items():
         for condition, never, tick in branch["goal"]:
             yield {"branch": name, "condition": condition, "never": never, "tick": tick}
 

@@ -50,12 +50,12 @@ class Watch:
         return self.progress
 
     def _feed(self, tick: int, states: Any) -> None:
-        found: dict[BeliefPath, State] = {}
+        views: dict[BeliefPath, State] = {}
         for path in self._paths:
-            held = states[path]
-            found[tuple(name for name in path.split("/") if name)] = getattr(held, "state", held)
-        look = looking_at(found)
-        said = 0 if tick == self._start else self._said_at(tick, found[()])
+            view = states[path]
+            views[tuple(name for name in path.split("/") if name)] = getattr(view, "state", view)
+        look = looking_at(views)
+        said = 0 if tick == self._start else self._said_at(tick, views[()])
         for each in self._distinct:
             each.feed(tick, look, said)
 

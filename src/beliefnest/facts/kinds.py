@@ -267,15 +267,15 @@ class _Items(Fact):
         """Return the container or agent with a verb, such as `ann has`."""
 
     def holds(self, facts: Facts) -> bool:
-        known = self.known(facts)
-        return all(known.get(item, 0) >= count for item, count in self.wanted)
+        items = self.known(facts)
+        return all(items.get(item, 0) >= count for item, count in self.wanted)
 
     def instead(self, facts: Facts) -> str | None:
-        known = dict(self.known(facts))
-        if known == self.counts:
+        items = dict(self.known(facts))
+        if items == self.counts:
             return None
-        found, wanted = (_named(each) for each in (known, self.counts))
-        return f"{self.has} {found}, not {wanted}"
+        actual, wanted = (_named(each) for each in (items, self.counts))
+        return f"{self.has} {actual}, not {wanted}"
 
     @property
     def items(self) -> tuple[str, ...]:
@@ -313,11 +313,11 @@ class ItemsIn(_Items):
         return ", ".join(self.counts), " and ".join(places) or "nowhere"
 
     def effort(self, facts: PlanFacts) -> float:
-        known = self.known(facts)
+        items = self.known(facts)
         if not self.wanted:
-            return float(max(1, sum(known.values())))
+            return float(max(1, sum(items.values())))
         return sum(
-            max(0, count - known.get(item, 0)) * to_container(facts, self.owner, item)
+            max(0, count - items.get(item, 0)) * to_container(facts, self.owner, item)
             for item, count in self.wanted
         )
 
@@ -435,11 +435,11 @@ class AgentAt(Fact):
         return math.dist(feet, middle_of(self.place)) <= self.within
 
     def instead(self, facts: Facts) -> str | None:
-        found, wanted = (
+        actual, wanted = (
             "nowhere" if each is None else f"at {point_words(each)}"
             for each in (facts.feet_of(self.agent), self.place)
         )
-        return None if self.holds(facts) else f"{self.agent} is {found}, not {wanted}"
+        return None if self.holds(facts) else f"{self.agent} is {actual}, not {wanted}"
 
     def found(self, facts: StateFacts, named: Named) -> tuple[str, str]:
         feet = facts.feet_of(self.agent)
@@ -477,12 +477,12 @@ class LeversHeld(Fact):
         return f"{' and '.join(self.agents)} at once at levers that are on, at {sites}"
 
     def holds(self, facts: Facts) -> bool:
-        known = self._known(facts)
-        return any(not _is_off(facts, site) and not self._far(facts, site) for site in known)
+        sites = self._known(facts)
+        return any(not _is_off(facts, site) and not self._far(facts, site) for site in sites)
 
     def effort(self, facts: PlanFacts) -> float:
-        known = self._known(facts)
-        off = [_is_off(facts, site) + self._far(facts, site) * PER_BLOCK for site in known]
+        sites = self._known(facts)
+        off = [_is_off(facts, site) + self._far(facts, site) * PER_BLOCK for site in sites]
         return 1.0 + min(off, default=2 * FAR * PER_BLOCK)
 
     def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
@@ -704,10 +704,10 @@ class SignSays(Fact):
         there, where = facts.sign(self.place), point_words(self.place)
         if there == self.text:
             return None
-        found = f"of a sign at {where} nothing is known"
+        actual = f"of a sign at {where} nothing is known"
         if there is not None:
-            found = f"the sign at {where} says {sign_words(there)!r}"
-        return f"{found}, not {'unknown' if self.text is None else repr(sign_words(self.text))}"
+            actual = f"the sign at {where} says {sign_words(there)!r}"
+        return f"{actual}, not {'unknown' if self.text is None else repr(sign_words(self.text))}"
 
     def found(self, facts: StateFacts, named: Named) -> tuple[str, str]:
         there = facts.sign(self.place)
@@ -851,5 +851,5 @@ def _property(text: str | None, name: str) -> str | None:
     if text is None:
         return None
     registry = Registry.load()
-    found = registry.properties(registry.state_id(text)).get(name)
-    return None if found is None else str(found)
+    value = registry.properties(registry.state_id(text)).get(name)
+    return None if value is None else str(value)

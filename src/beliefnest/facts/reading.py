@@ -107,7 +107,7 @@ def edits_of(entries: Iterable[FactEntry]) -> dict[str, dict[Any, Any]]:
     Raises:
         InputError: An entry is no fact, or there is no such edit.
     """
-    found: dict[str, dict[Any, Any]] = {}
+    edits: dict[str, dict[Any, Any]] = {}
     for entry in entries:
         fact = fact_in(entry)
         if fact.edit is None or entry.path != "/":
@@ -116,27 +116,27 @@ def edits_of(entries: Iterable[FactEntry]) -> dict[str, dict[Any, Any]]:
                 "agent is, or the state of a block, and no path"
             )
         argument, key, value = fact.edit
-        found.setdefault(argument, {})[key] = value
-    return found
+        edits.setdefault(argument, {})[key] = value
+    return edits
 
 
-def plain_entry(given: object) -> FactEntry:
+def plain_entry(entry: object) -> FactEntry:
     """Return a fact that was given as a mapping; what it names is not checked.
 
     Raises:
         InputError: The fact is malformed.
     """
     try:
-        return msgspec.convert(given, FactEntry)
+        return msgspec.convert(entry, FactEntry)
     except msgspec.ValidationError as fault:
         fields = FactEntry.__struct_fields__
-        if isinstance(given, Mapping) and (others := [key for key in given if key not in fields]):
-            told = nearest_or_all(str(others[0]), fields, "its keys are")
-            raise InputError(f"the fact {given!r} has the key {others[0]!r}{told}") from None
-        raise InputError(f"the fact {given!r} is malformed: {fault}") from None
+        if isinstance(entry, Mapping) and (others := [key for key in entry if key not in fields]):
+            hint = nearest_or_all(str(others[0]), fields, "its keys are")
+            raise InputError(f"the fact {entry!r} has the key {others[0]!r}{hint}") from None
+        raise InputError(f"the fact {entry!r} is malformed: {fault}") from None
 
 
-def fact_entry(given: object, scene: PlainScene) -> FactEntry:
+def fact_entry(entry: object, scene: PlainScene) -> FactEntry:
     """Return a fact that was given as a mapping, checked.
 
     Raises:
@@ -144,7 +144,7 @@ def fact_entry(given: object, scene: PlainScene) -> FactEntry:
         PathError: The belief does not exist.
         UnknownNameError: The item or block does not exist.
     """
-    return check_entry(plain_entry(given), (), scene)
+    return check_entry(plain_entry(entry), (), scene)
 
 
 def check_entry(entry: FactEntry, path: Where, scene: FactScene) -> FactEntry:
@@ -199,21 +199,21 @@ def fact_in(entry: FactEntry) -> Fact:
         raise InputError("each site of a fact must have as many levers as there are `agents`")
     # msgspec omits a default by its identity, which a number loses on its way to another process.
     usual = msgspec.structs.asdict(FactEntry())
-    given: dict[str, Any] = {
+    values: dict[str, Any] = {
         key: value
         for key in FactEntry.__struct_fields__
         if key != "path" and (value := getattr(entry, key)) != usual[key]
     }
-    kinds = [kind for kind in KINDS if {*kind.keys} <= given.keys() <= {*kind.keys, *kind.more}]
+    kinds = [kind for kind in KINDS if {*kind.keys} <= values.keys() <= {*kind.keys, *kind.more}]
     facts = [fact for kind in kinds if (fact := kind.read(entry)) is not None]
     if len(facts) != 1:
-        whole = [kind for kind in KINDS if {*kind.keys} <= given.keys()]
-        near = whole or [kind for kind in KINDS if {*kind.keys} & given.keys()] or KINDS
+        whole = [kind for kind in KINDS if {*kind.keys} <= values.keys()]
+        near = whole or [kind for kind in KINDS if {*kind.keys} & values.keys()] or KINDS
         forms = listed(list(dict.fromkeys(" and ".join(kind.keys) for kind in near)), "or")
-        extra = {key for kind in whole for key in given.keys() - {*kind.keys, *kind.more}}
+        extra = {key for kind in whole for key in values.keys() - {*kind.keys, *kind.more}}
         nulls = listed([f"`{key}: null`" for key in sorted(extra) if usual[key] is None], "or")
         hint = nulls and f"; a condition leaves out what the file gives by {nulls}"
-        raise InputError(f"the fact {given} makes no sense; give {forms}{hint}")
+        raise InputError(f"the fact {values} makes no sense; give {forms}{hint}")
     return facts[0]
 
 

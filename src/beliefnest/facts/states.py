@@ -76,13 +76,13 @@ class ViewFacts:
 
     def items_in(self, place: Position) -> Items:
         """Return items known to be in a container."""
-        known = self._view.containers.get(place)
-        return {} if known is None else known.items
+        content = self._view.containers.get(place)
+        return {} if content is None else content.items
 
     def is_complete(self, place: Position) -> bool:
         """Return True if the contents of a container are known completely."""
-        known = self._view.containers.get(place)
-        return known is not None and known.complete
+        content = self._view.containers.get(place)
+        return content is not None and content.complete
 
     def items_of(self, agent: str) -> Items:
         """Return items that an agent is known to have."""
@@ -118,11 +118,11 @@ class StateFacts(ViewFacts):
 
     def containers_with(self, items: Items) -> list[Position]:
         """Return the containers that are known to hold at least some items, sorted."""
-        known = sorted(self._state.containers.items())
+        contents = sorted(self._state.containers.items())
         return [
             place
-            for place, held in known
-            if all(held.items.get(name, 0) >= count for name, count in items.items())
+            for place, content in contents
+            if all(content.items.get(name, 0) >= count for name, count in items.items())
         ]
 
 

@@ -211,27 +211,27 @@ def _events(journal: Journal) -> Iterator[FrameRow]:
 
 
 def _rounds(journal: Journal) -> Iterator[FrameRow]:
-    told = told_episode(RecordedNest(journal))
-    return iter(()) if told is None else round_rows(told)
+    episode = told_episode(RecordedNest(journal))
+    return iter(()) if episode is None else round_rows(episode)
 
 
 def _claims(journal: Journal, paths: Sequence[str] | None) -> Iterator[FrameRow]:
     nest = RecordedNest(journal)
     asked = [path_text((name,)) for name in nest.agents] if paths is None else paths
-    for number, told in enumerate(nest.claims(), start=1):
+    for number, claim in enumerate(nest.claims(), start=1):
         for path in asked:
             yield {
                 "claim": number,
-                "tick": told.tick,
-                "speaker": told.speaker,
-                "addressee": told.addressee,
-                "text": told.text,
-                **{key: _plain(value) for key, value in _claim(told.claim.plain()).items()},
-                "false": told.false,
-                "lie": told.lie,
+                "tick": claim.tick,
+                "speaker": claim.speaker,
+                "addressee": claim.addressee,
+                "text": claim.text,
+                **{key: _plain(value) for key, value in _claim(claim.claim.plain()).items()},
+                "false": claim.false,
+                "lie": claim.lie,
                 "path": path,
-                "taken_up": told.taken_up(path),
-                "why": told.why(path),
+                "taken_up": claim.taken_up(path),
+                "why": claim.why(path),
             }
 
 
@@ -251,19 +251,19 @@ def _beliefs(journal: Journal, paths: Sequence[str]) -> Iterator[FrameRow]:
                 "tick": moment.tick,
             }
             for kind, key in (("container", "containers"), ("agent", "agents")):
-                for subject, held in state[key].items():
-                    yield {**place, "kind": kind, "subject": subject, **_held(held)}
+                for subject, belief in state[key].items():
+                    yield {**place, "kind": kind, "subject": subject, **_held(belief)}
 
 
-def _held(held: Mapping[str, Any]) -> FrameRow:
-    items = held.get("items", held.get("inventory"))
+def _held(belief: Mapping[str, Any]) -> FrameRow:
+    items = belief.get("items", belief.get("inventory"))
     return {
         "items": _plain(items),
-        "complete": held.get("complete", held.get("inventory_complete")),
-        "position": _plain(held.get("position")),
-        "current": held["current"],
-        "observed_at": held["observed_at"],
-        "source": held["source"],
+        "complete": belief.get("complete", belief.get("inventory_complete")),
+        "position": _plain(belief.get("position")),
+        "current": belief["current"],
+        "observed_at": belief["observed_at"],
+        "source": belief["source"],
     }
 
 
@@ -275,6 +275,6 @@ def _plain(value: Any) -> Any:
 
 
 def _frame(rows: Iterator[FrameRow], ids: Sequence[str]) -> "pandas.DataFrame":
-    found = list(rows)
-    columns = dict.fromkeys([*ids, *(key for row in found for key in row)])
-    return plain_frame({name: Typed([row.get(name) for row in found]) for name in columns})
+    table_rows = list(rows)
+    columns = dict.fromkeys([*ids, *(key for row in table_rows for key in row)])
+    return plain_frame({name: Typed([row.get(name) for row in table_rows]) for name in columns})

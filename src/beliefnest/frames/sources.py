@@ -54,7 +54,7 @@ def cells_of(source: FrameSource) -> Iterator[RecordedCell]:
         yield RecordedCell(path.stem, {}, path)
         return
     report = read_report(path, _AGAIN) if (path / REPORT).is_file() else {"runs": []}
-    known = {Path(run["run_dir"]).absolute(): run for run in report["runs"]}
+    runs = {Path(run["run_dir"]).absolute(): run for run in report["runs"]}
     files = sorted(path.rglob(_RUN_FILE))
     if not files:
         raise InputError(
@@ -62,7 +62,7 @@ def cells_of(source: FrameSource) -> Iterator[RecordedCell]:
         )
     for file in files:
         relative = file.parent.relative_to(path).as_posix()
-        about = known.get(file.parent.absolute(), {})
+        about = runs.get(file.parent.absolute(), {})
         named = {"scenario": report["scenario"], **about} if about else {}
         yield RecordedCell(relative, named, file)
 
@@ -70,10 +70,10 @@ def cells_of(source: FrameSource) -> Iterator[RecordedCell]:
 def _cells_of_study(study: StudyResult) -> Iterator[RecordedCell]:
     folder = study.folder
     for planned in study.plan["cells"]:
-        found = folder.cell(planned["name"])
-        if found is None:
+        record = folder.cell(planned["name"])
+        if record is None:
             continue
-        run = found.get("run")
+        run = record.get("run")
         file = folder.path / run if run else None
-        about = {**planned["key"], "seed": planned["seed"], **found}
+        about = {**planned["key"], "seed": planned["seed"], **record}
         yield RecordedCell(planned["name"], about, file)

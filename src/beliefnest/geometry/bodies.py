@@ -97,9 +97,9 @@ def body_codes(registry: Registry, doors: Doorways, *, guesses: bool) -> BodyCod
     codes[phantoms] ^= np.uint32(FLOOR)
     codes[phantoms & (codes & (ALONG_X | ALONG_Z) == 0)] |= np.uint32(ALONG_X | ALONG_Z)
     unknown = ROOM | ((UNKNOWN | FULL << TOP_SHIFT) if guesses else 0)
-    found = np.concatenate([np.array([unknown], dtype=np.uint32), codes])
-    found.flags.writeable = False
-    return found
+    all_codes = np.concatenate([np.array([unknown], dtype=np.uint32), codes])
+    all_codes.flags.writeable = False
+    return all_codes
 
 
 def _kind(registry: Registry, name: str) -> int:

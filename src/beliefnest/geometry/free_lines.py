@@ -65,8 +65,8 @@ def _between(box: Box, blocks: Terrain, eye: Point, block: Position) -> Floats:
     """Return the boxes (n, 6) of all blocks that a line from an eye to a block can meet."""
     ends = [sorted((math.floor(a), b)) for a, b in zip(eye, block, strict=True)]
     cells = itertools.product(*(range(low, high + 1) for low, high in ends))
-    found = [each for cell in cells if cell != block for each in _boxes(box, blocks, cell)]
-    return np.array(found, dtype=np.float64).reshape(-1, 6)
+    boxes = [each for cell in cells if cell != block for each in _boxes(box, blocks, cell)]
+    return np.array(boxes, dtype=np.float64).reshape(-1, 6)
 
 
 def _boxes(box: Box, blocks: Terrain, cell: tuple[int, ...]) -> list[tuple[float, ...]]:
@@ -86,7 +86,7 @@ def _boxes(box: Box, blocks: Terrain, cell: tuple[int, ...]) -> list[tuple[float
 
 def _faces(eye: Point, bounds: tuple[float, ...]) -> Floats:
     """Return points (n, 3) on those faces of a box that are turned to an eye."""
-    found = []
+    points = []
     for axis in range(3):
         low, high = bounds[axis], bounds[axis + 3]
         if low <= eye[axis] <= high:
@@ -97,8 +97,8 @@ def _faces(eye: Point, bounds: tuple[float, ...]) -> Floats:
             point[axis] = low if eye[axis] < low else high
             point[first] = bounds[first] + u * (bounds[first + 3] - bounds[first])
             point[second] = bounds[second] + v * (bounds[second + 3] - bounds[second])
-            found.append(point)
-    return np.array(found, dtype=np.float64).reshape(-1, 3)
+            points.append(point)
+    return np.array(points, dtype=np.float64).reshape(-1, 3)
 
 
 def _is_free(eye: Point, targets: Floats, obstacles: Floats) -> bool:

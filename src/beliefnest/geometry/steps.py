@@ -262,7 +262,7 @@ def _is_edge(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int
 
 
 @inner
-def jumps(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int, found: Ints) -> int:
+def jumps(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int, steps: Ints) -> int:
     """Write distance and change of height of jumps in one direction; return their number.
 
     A jump leads over a gap of one to three cells, by one block up or down.
@@ -282,17 +282,17 @@ def jumps(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int, f
         deep = code_at(codes, sizes, i, y - 2, k)
         is_room = head & ahead & ROOM != 0
         if is_high and is_room and (_bears(codes, sizes, i, y - 1, k) or _is_layer(below)):
-            found[2 * count], found[2 * count + 1] = far, -1 if _is_layer(below) else 0
+            steps[2 * count], steps[2 * count + 1] = far, -1 if _is_layer(below) else 0
             return count + 1
         if is_high and head & ROOM and ahead & FLOOR and above & ROOM and far < FARTHEST_JUMP:
             is_held = _is_layer(ahead) or _bears(codes, sizes, i, y, k)
             if is_held and _rise(codes, sizes, x, y, z, ahead) <= _JUMP:
-                found[2 * count], found[2 * count + 1] = far, 0 if _is_layer(ahead) else 1
+                steps[2 * count], steps[2 * count + 1] = far, 0 if _is_layer(ahead) else 1
                 count += 1
             return count
         if (is_high or far == 2) and is_room and below & ROOM and is_deep:
             if _bears(codes, sizes, i, y - 2, k) or _is_layer(deep):
-                found[2 * count], found[2 * count + 1] = far, -2 if _is_layer(deep) else -1
+                steps[2 * count], steps[2 * count + 1] = far, -2 if _is_layer(deep) else -1
                 count += 1
                 is_deep = False
         elif not is_room:

@@ -166,9 +166,9 @@ def _report(sample: dict[str, Any], asked: _Asked) -> dict[str, Any]:
         task, policies, world=sample["world"], seed=sample["instance"], names=names
     ) as episode:
         episode.play()
-        told = told_episode(episode.nest)
-        assert told is not None
-        branch = told["branches"][episode.branch]
+        episode_report = told_episode(episode.nest)
+        assert episode_report is not None
+        branch = episode_report["branches"][episode.branch]
         return {
             "success": episode.success,
             "goal": branch["goal"],
@@ -191,17 +191,17 @@ def goal_reached() -> Scorer:
     """Score an episode by its goal; explain when each condition came true, and all rounds."""
 
     async def score(state: TaskState, target: Target) -> Score:
-        found = state.metadata["episode"]
+        episode_metadata = state.metadata["episode"]
         lines = [
             f"{'not to be: ' if never else ''}{condition}: "
             f"{'at no tick' if tick is None else f'at tick {tick}'}"
-            for condition, never, tick in found["goal"]
+            for condition, never, tick in episode_metadata["goal"]
         ]
         return score_of(
-            ok=found["success"],
+            ok=episode_metadata["success"],
             answer=state.output.completion,
-            lines=[*lines, "", *found["rounds"]],
-            metadata=found["measures"],
+            lines=[*lines, "", *episode_metadata["rounds"]],
+            metadata=episode_metadata["measures"],
         )
 
     return score

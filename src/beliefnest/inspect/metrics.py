@@ -36,11 +36,11 @@ def metrics_by(key: str) -> list[Metric | dict[str, list[Metric]]]:
 def _clusters(scores: Sequence[SampleScore]) -> list[list[float]]:
     """Return the values of scores by scene."""
     to_float = value_to_float()
-    found: dict[object, list[float]] = {}
+    scores_of_scene: dict[object, list[float]] = {}
     for each in scores:
         scene = (each.sample_metadata or {}).get(CLUSTER, each.sample_id)
-        found.setdefault(scene, []).append(to_float(each.score.value))
-    return list(found.values())
+        scores_of_scene.setdefault(scene, []).append(to_float(each.score.value))
+    return list(scores_of_scene.values())
 
 
 @metric
@@ -64,8 +64,8 @@ def chance() -> Metric:
 
     def value(scores: list[SampleScore]) -> float:
         levels = [(each.sample_metadata or {}).get("chance") for each in scores]
-        known = [each for each in levels if each is not None]
-        return float(np.mean(known)) if known and len(known) == len(levels) else math.nan
+        chances = [each for each in levels if each is not None]
+        return float(np.mean(chances)) if chances and len(chances) == len(levels) else math.nan
 
     return value
 
@@ -75,8 +75,8 @@ def not_answered() -> Metric:
     """Count the answers of each outcome without an answer, over all epochs of all samples."""
 
     def value(scores: list[SampleScore]) -> Value:
-        told = [(each.score.metadata or {}).get("outcome") for each in scores]
-        return {name: told.count(name) for name in NOT_ANSWERED}
+        outcomes = [(each.score.metadata or {}).get("outcome") for each in scores]
+        return {name: outcomes.count(name) for name in NOT_ANSWERED}
 
     return value
 
@@ -113,16 +113,16 @@ def rated() -> Metric:
     """Compute the share of answers with all ratings; correlations are over these."""
 
     def value(scores: list[SampleScore]) -> float:
-        told = [(each.score.metadata or {}).get("outcome") == "rated" for each in scores]
-        return float(np.mean(told)) if told else math.nan
+        is_rated = [(each.score.metadata or {}).get("outcome") == "rated" for each in scores]
+        return float(np.mean(is_rated)) if is_rated else math.nan
 
     return value
 
 
 def _correlation(scores: Sequence[SampleScore], about: JudgedPart) -> float:
     """Return Pearson's coefficient over all epochs of all samples; nan if a side is constant."""
-    told = [each.score.metadata or {} for each in scores]
-    pairs = np.array([pair for each in told for pair in each.get(about, [])]).reshape(-1, 2)
+    metadata = [each.score.metadata or {} for each in scores]
+    pairs = np.array([pair for each in metadata for pair in each.get(about, [])]).reshape(-1, 2)
     if len(pairs) < 3 or (np.ptp(pairs, axis=0) < 1e-12).any():
         return math.nan
     return float(np.corrcoef(pairs[:, 0], pairs[:, 1])[0, 1])

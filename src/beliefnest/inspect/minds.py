@@ -66,8 +66,8 @@ def minds_task(
     names = several_files(scenarios)
     samples = [each for name in names for each in _samples(name, conditions, world, seed)]
     if not samples:
-        told = ", ".join(names)
-        raise InputError(f"{told} has no probes with infer; give a scenario that infers")
+        listed_names = ", ".join(names)
+        raise InputError(f"{listed_names} has no probes with infer; give a scenario that infers")
     about = ", ".join(dict.fromkeys(str((each.metadata or {})["name"]) for each in samples))
     return task_of(f"minds of {about}", samples, like_inference(), course_in_words())
 
@@ -219,19 +219,19 @@ def like_inference() -> Scorer:
         if lost is not None:
             return lost
         answer, finish = state.output.completion, finish_of(state.output)
-        reading, found = await run_sync(courses.compared, state.metadata, answer, finish)
-        lines = [f"{about}: {_pairs_text(pairs)}" for about, pairs in found.pairs.items()]
+        reading, match = await run_sync(courses.compared, state.metadata, answer, finish)
+        lines = [f"{about}: {_pairs_text(pairs)}" for about, pairs in match.pairs.items()]
         outcome = "rated" if reading.outcome == "read" else reading.row_outcome
         if reading.reason:
             lines = [f"{outcome}: {reading.reason}"]
         return Score(
-            value=1 - found.error,
+            value=1 - match.error,
             answer=answer,
             explanation="\n".join(lines),
             metadata={
                 "outcome": outcome,
-                "error": found.error,
-                **{about: [list(pair) for pair in pairs] for about, pairs in found.pairs.items()},
+                "error": match.error,
+                **{about: [list(pair) for pair in pairs] for about, pairs in match.pairs.items()},
             },
         )
 

@@ -24,15 +24,15 @@ def requests_of(scenario: Scenario) -> list[Probe]:
 
     Probes without expectations are left out.
     """
-    found = []
+    requests = []
     for probe in scenario.probes:
         if not probe.asks_model:
             continue
-        told = tuple(each for each in probe.expect if not isinstance(each, Answers))
-        if told:
-            found.append(replace(probe, expect=told))
-        found += [replace(probe, expect=(question,)) for question in probe.questions]
-    return found
+        expected = tuple(each for each in probe.expect if not isinstance(each, Answers))
+        if expected:
+            requests.append(replace(probe, expect=expected))
+        requests += [replace(probe, expect=(question,)) for question in probe.questions]
+    return requests
 
 
 @dataclass(frozen=True)

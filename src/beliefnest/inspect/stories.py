@@ -112,9 +112,9 @@ def story_answer() -> Scorer:
         if outcome == "read":
             outcome = "ok" if ok else "wrong"
         lines = await run_sync(_explanation, dict(state.metadata))
-        told = [f"{outcome}: {reading.reason}"] if reading.reason else [outcome]
+        head = [f"{outcome}: {reading.reason}"] if reading.reason else [outcome]
         return score_of(
-            ok=ok, answer=reading.option, lines=[*told, "", *lines], metadata={"outcome": outcome}
+            ok=ok, answer=reading.option, lines=[*head, "", *lines], metadata={"outcome": outcome}
         )
 
     return score

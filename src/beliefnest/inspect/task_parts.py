@@ -72,13 +72,13 @@ def several_files(names: str | list[str]) -> list[str]:
     Raises:
         InputError: There is none, or one is named twice.
     """
-    found = [names] if isinstance(names, str) else [str(each) for each in names]
-    if not found:
+    files = [names] if isinstance(names, str) else [str(each) for each in names]
+    if not files:
         raise InputError("file is empty; give at least one file")
-    twice = [each for each in found if found.count(each) > 1]
+    twice = [each for each in files if files.count(each) > 1]
     if twice:
         raise InputError(f"file names {twice[0]} twice; name it once")
-    return found
+    return files
 
 
 def score_of(

@@ -77,7 +77,7 @@ def _several(numbers: list[int] | None) -> tuple[int, ...] | None:
 
 def _samples(cell: Cell, scenario: str) -> list[Sample]:
     key = cell.key
-    found = []
+    samples = []
     for number, probe in enumerate(requests_of(cell.scenario), start=1):
         expected = expected_json(probe.expect)
         asks = probe.task if probe.asks_for_program else probe.questions[0].question
@@ -100,8 +100,8 @@ def _samples(cell: Cell, scenario: str) -> list[Sample]:
         }
         target = json.dumps(expected, sort_keys=True)
         name = f"{key.name}-{number}"
-        found.append(Sample(input=asks, target=target, id=name, metadata=about))
-    return found
+        samples.append(Sample(input=asks, target=target, id=name, metadata=about))
+    return samples
 
 
 @solver
@@ -129,7 +129,7 @@ def in_the_belief() -> Scorer:
         answer, finish = state.output.completion, finish_of(state.output)
         judged = await run_sync(stage.judged, state.metadata, answer, finish)
         outcome = judged.outcome
-        told = probe_json(outcome, "")
+        probe_report = probe_json(outcome, "")
         lines = [f"{outcome.outcome}: {outcome.why_not}" if outcome.why_not else outcome.outcome]
         if judged.grounds:
             lines += ["", f"What {outcome.probe.path} holds, and why:", *judged.grounds]
@@ -137,7 +137,7 @@ def in_the_belief() -> Scorer:
             ok=outcome.ok,
             answer=outcome.program or state.output.completion,
             lines=lines,
-            metadata={"outcome": outcome.outcome, **{key: told[key] for key in _KEPT}},
+            metadata={"outcome": outcome.outcome, **{key: probe_report[key] for key in _KEPT}},
         )
 
     return score

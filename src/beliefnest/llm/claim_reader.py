@@ -119,10 +119,10 @@ def _claims_in(text: str, nameable: "Nameable") -> "tuple[Claim, ...]":
     from beliefnest.world.claims import claims_from_plain
 
     fenced = _FENCED.fullmatch(text)
-    found = decode_json(text if fenced is None else fenced[1], _Found)
-    if len(found.claims) > _MOST:
-        raise msgspec.ValidationError(f"{len(found.claims)} claims are more than {_MOST}")
-    claims = claims_from_plain(found.claims)
+    entries = decode_json(text if fenced is None else fenced[1], _Found)
+    if len(entries.claims) > _MOST:
+        raise msgspec.ValidationError(f"{len(entries.claims)} claims are more than {_MOST}")
+    claims = claims_from_plain(entries.claims)
     for claim in claims:
         claim.check(nameable.box, nameable.agents)
     return tuple(dict.fromkeys(claims))

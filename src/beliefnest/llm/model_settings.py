@@ -57,8 +57,8 @@ class ModelSettings:
         if isinstance(again, bool) or not isinstance(again, int) or again < 0:
             raise InputError(f"retry_unread is {again!r}; give a whole number, at least 0")
         if self.skills not in get_args(SkillDetail):
-            known = ", ".join(get_args(SkillDetail))
-            raise InputError(f"skills is {self.skills!r}; give one of {known}")
+            details = ", ".join(get_args(SkillDetail))
+            raise InputError(f"skills is {self.skills!r}; give one of {details}")
         if self.answer not in get_args(AskedForm):
             forms = ", ".join(get_args(AskedForm))
             raise InputError(f"answer is {self.answer!r}; give one of {forms}")
@@ -81,11 +81,11 @@ class ModelSettings:
         Raises:
             InputError: There is no such setting, or its value is not valid.
         """
-        known = {each.name for each in fields(cls)}
+        names = {each.name for each in fields(cls)}
         values: dict[str, Any] = {}
         for name, text in parse_qsl(query, keep_blank_values=True):
-            if name not in known:
-                raise InputError(f"there is no setting {name!r}; give {', '.join(sorted(known))}")
+            if name not in names:
+                raise InputError(f"there is no setting {name!r}; give {', '.join(sorted(names))}")
             values[name] = _number(text) if name in _NUMBERS else text
         return cls.of_file(values.pop("system", None), **values)
 

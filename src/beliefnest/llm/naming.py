@@ -242,55 +242,55 @@ class Names:
     def _modifiers(self) -> dict[tuple[str, ...], int]:
         """Return names without the last word, if it is that of another option too: `red`."""
         lasts = [form[-1] for form in self._forms if form]
-        found: dict[tuple[str, ...], list[int]] = {}
+        options_of: dict[tuple[str, ...], list[int]] = {}
         for number, form in enumerate(self._forms):
             if 1 < len(form) < 4 and lasts.count(form[-1]) > 1:
-                found.setdefault(form[:-1], []).append(number)
-        return {form: own[0] for form, own in found.items() if len(own) == 1}
+                options_of.setdefault(form[:-1], []).append(number)
+        return {form: own[0] for form, own in options_of.items() if len(own) == 1}
 
     def named(self, sentence: str) -> NamedOptions:
         """Return the options that a plain sentence names."""
         tokens = [token for token in tokens_of(sentence) if token.raw != "\n"]
-        found = NamedOptions()
+        named = NamedOptions()
         if len(tokens) > _LONGEST:
             for each in self._mentions(tokens[:_LONGEST]):
-                found.unsure |= each.options
-            return found
+                named.unsure |= each.options
+            return named
         mentions = self._mentions(tokens)
         inside = {place: each for each in mentions for place in range(each.start, each.end)}
         words = [t.word for t in tokens]
         outside = [w if place not in inside else "" for place, w in enumerate(words)]
         supposed = not _CONDITIONS.isdisjoint(outside)
-        found.bare = bool(mentions) and all(
+        named.bare = bool(mentions) and all(
             place in inside or not word or _is_fill(word) for place, word in enumerate(words)
         )
         grounds = _grounds(tokens, inside)
         sides = _sides(tokens, inside) if supposed else {}
         answers = [each for each in mentions if sides.get(each.start) == "answer"]
         for each in answers:
-            found.either |= each.options if not _negated(tokens, inside, each) else set()
+            named.either |= each.options if not _negated(tokens, inside, each) else set()
         # `A unless he saw it` is an answer with a doubt; `if he saw it, A` is half of one.
-        sole = len(found.either) == 1 and _CONDITIONS.isdisjoint({*outside} - {"unless"})
+        sole = len(named.either) == 1 and _CONDITIONS.isdisjoint({*outside} - {"unless"})
         for each in mentions:
             open_ = not supposed and _is_left_open(tokens, inside, each)
             conditional = supposed and not (sole and each in answers)
             conditional |= "otherwise" in outside[: each.start]
-            if not open_ and (conditional or (each.start in grounds and not found.bare)):
-                found.aside |= each.options
+            if not open_ and (conditional or (each.start in grounds and not named.bare)):
+                named.aside |= each.options
                 continue
             match _negated(tokens, inside, each):
                 case True:
-                    found.no |= each.options
+                    named.no |= each.options
                 case None:
-                    found.unsure |= each.options
+                    named.unsure |= each.options
                 case False:
-                    found.yes |= each.options
-                    found.maybe |= each.options if open_ else set()
+                    named.yes |= each.options
+                    named.maybe |= each.options if open_ else set()
                     clause = _clause_before(tokens, each.start)
                     stated = any(w in _SPEECH for w in clause)
-                    found.told |= stated and not any(w in _PAST for w in clause)
-        found.told |= found.bare
-        return found
+                    named.told |= stated and not any(w in _PAST for w in clause)
+        named.told |= named.bare
+        return named
 
     def without(self, sentence: str) -> str:
         """Return a plain sentence in lower case without the names in it."""
@@ -530,7 +530,7 @@ def _is_left_open(tokens: Sequence[Token], inside: dict[int, _Mention], mention:
 
 def _grounds(tokens: Sequence[Token], inside: dict[int, _Mention]) -> set[int]:
     """Return the places of tokens that give grounds: after `because`, `from`, or in brackets."""
-    found: set[int] = set()
+    places: set[int] = set()
     depth, reason = 0, False
     answered = False
     for place, token in enumerate(tokens):
@@ -550,12 +550,12 @@ def _grounds(tokens: Sequence[Token], inside: dict[int, _Mention]) -> set[int]:
         elif token.word in ("or", "perhaps", "maybe", "possibly", "alternatively"):
             reason = False
         if depth or reason:
-            found.add(place)
+            places.add(place)
         if place not in inside and token.word in _ABOUT:
             following = next((p for p in range(place, len(tokens)) if p in inside), None)
             if following is not None and following - place < 4:
-                found.add(following)
-    return found
+                places.add(following)
+    return places
 
 
 def _sides(tokens: Sequence[Token], inside: dict[int, _Mention]) -> dict[int, str]:

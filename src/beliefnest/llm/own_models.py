@@ -32,18 +32,18 @@ class OwnModel:
             ModelError: It raised something, or gave no `Answer`.
         """
         try:
-            found: object = self.model.answer(messages, sampling)
+            answer: object = self.model.answer(messages, sampling)
         except BeliefNestError:
             raise
         except (Exception, SystemExit) as error:  # Code of users may raise anything.
-            told = excerpt(f"{type(error).__name__}: {error}")
-            raise ModelError(f"{self.name} raised {told}") from error
-        if not isinstance(found, Answer):
+            fault = excerpt(f"{type(error).__name__}: {error}")
+            raise ModelError(f"{self.name} raised {fault}") from error
+        if not isinstance(answer, Answer):
             raise ModelError(
-                f"{self.name} gave {type(found).__name__} and no answer; return "
+                f"{self.name} gave {type(answer).__name__} and no answer; return "
                 "beliefnest.llm.Answer(text)"
             )
-        return found
+        return answer
 
 
 def installed_models() -> tuple[str, ...]:

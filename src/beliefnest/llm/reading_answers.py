@@ -94,8 +94,8 @@ def is_refusal(text: str) -> bool:
 
 def withheld(text: str) -> str:
     """Return why an answer with the finish `content_filter` is none."""
-    told = f": {excerpt(text)}" if text.strip() else ""
-    return f"the provider withheld the answer, or the model refused{told}"
+    quotation = f": {excerpt(text)}" if text.strip() else ""
+    return f"the provider withheld the answer, or the model refused{quotation}"
 
 
 def read_answer(  # noqa: PLR0911 - each end of an answer has its own reason
@@ -120,27 +120,27 @@ def read_answer(  # noqa: PLR0911 - each end of an answer has its own reason
     if finish == "length":
         return AnswerReading(None, "cut", "a limit cut the answer off", said.thinking)
     if finish == "content_filter":
-        told = withheld(said.text)
-        return AnswerReading(None, "unread", told, said.thinking, refused=True)
+        fault = withheld(said.text)
+        return AnswerReading(None, "unread", fault, said.thinking, refused=True)
     if said.open:
-        told = "the answer is a thought without an end"
-        return AnswerReading(None, "unread", told, said.thinking)
+        fault = "the answer is a thought without an end"
+        return AnswerReading(None, "unread", fault, said.thinking)
     if not said.text.strip():
-        told = "the answer is only thinking" if said.thinking else "the answer is empty"
-        return AnswerReading(None, "unread", told, said.thinking)
-    found = _Reader(options).read(said.text)
-    chosen, ambiguous, statement = found
+        fault = "the answer is only thinking" if said.thinking else "the answer is empty"
+        return AnswerReading(None, "unread", fault, said.thinking)
+    reading = _Reader(options).read(said.text)
+    chosen, ambiguous, statement = reading
     if len(chosen) == 1 and not ambiguous:
         return AnswerReading(options[chosen.pop()], "read", "", said.thinking, statement)
-    told = excerpt(statement or said.text.strip())
+    fault = excerpt(statement or said.text.strip())
     if chosen or ambiguous:
         names = " and ".join(repr(options[each]) for each in sorted(chosen))
-        reason = f"it names {names or 'no option clearly'}: {told}"
+        reason = f"it names {names or 'no option clearly'}: {fault}"
         return AnswerReading(None, "ambiguous", reason, said.thinking, statement)
     if grounds := given_reason(said.text):
-        told = f"{told} ({excerpt(grounds)})"
+        fault = f"{fault} ({excerpt(grounds)})"
     refused = is_refusal(said.text)
-    reason = f"the model refused: {told}" if refused else f"it names none of the options: {told}"
+    reason = f"the model refused: {fault}" if refused else f"it names none of the options: {fault}"
     return AnswerReading(None, "unread", reason, said.thinking, statement, refused)
 
 
@@ -166,53 +166,53 @@ class _Reader:
         kept = ""
         for part in without_made_up_turns(text):
             kept = f"{kept}\n{part}" if kept else part
-            found = self._part(kept)
-            if found[0] or found[1]:
-                return found
-            answered = found
+            reading = self._part(kept)
+            if reading[0] or reading[1]:
+                return reading
+            answered = reading
         return answered or (set(), False, "")
 
     def _part(self, text: str) -> _Found:
-        told = sorted([*statements(text), *self._alone(text)], key=lambda each: each.start)
+        parts = sorted([*statements(text), *self._alone(text)], key=lambda each: each.start)
         ruled_out: set[int] = set()
-        for place in range(len(told) - 1, -1, -1):
-            each = told[place]
-            found = self._statement(each)
-            if found is None:
+        for place in range(len(parts) - 1, -1, -1):
+            each = parts[place]
+            reading = self._statement(each)
+            if reading is None:
                 continue
-            if not found.yes and not found.unsure:
-                if found.no and each.kind == "prose":
-                    ruled_out |= found.no
+            if not reading.yes and not reading.unsure:
+                if reading.no and each.kind == "prose":
+                    ruled_out |= reading.no
                     continue
                 if each.kind == "prose":
                     continue
                 return set(), False, plain_words(each.text).strip()
-            chosen = found.yes | found.unsure
+            chosen = reading.yes | reading.unsure
             if each.kind == "line" and place:
                 # Lines one below the other are a list.
-                before = told[place - 1]
+                before = parts[place - 1]
                 named = self._statement(before)
                 if named is not None and not text[before.end : each.start].strip():
                     chosen |= named.yes
-            unclear = bool(found.unsure) or bool(chosen & ruled_out) or len(chosen) > 1
+            unclear = bool(reading.unsure) or bool(chosen & ruled_out) or len(chosen) > 1
             return self._reconsidered(chosen, unclear, each, text)
         return self._prose(text)
 
     def _alone(self, text: str) -> list[Statement]:
         """Return the lines that hold nothing but an option."""
-        found = []
+        lone = []
         at = 0
         kept = dict(bare_lines(text))
         for number, line in enumerate(text.split("\n")):
             start, at = at, at + len(line) + 1
             plain = kept.get(number, "")
             if plain and len(plain) < 300 and self._is_bare(plain):
-                found.append(Statement(start, start + len(line), line, "line"))
+                lone.append(Statement(start, start + len(line), line, "line"))
         # A mark before such a line has it as its value already.
         marks = statements(text)
         return [
             each
-            for each in found
+            for each in lone
             if not any(m.start <= each.start and each.end <= m.end for m in marks)
         ]
 
@@ -316,7 +316,7 @@ class _Reader:
         """Return what a text without any statement names, if it says one thing only."""
         plain = plain_words(text)
         whole = NamedOptions()
-        told = False
+        is_stated = False
         for sentence in sentences(plain):
             if sentence.endswith("?") and not re.match(r"\W*or\b", sentence, re.IGNORECASE):
                 continue
@@ -324,7 +324,7 @@ class _Reader:
             whole.yes |= named.yes
             whole.unsure |= named.unsure
             whole.either |= named.either if len(named.either) > 1 else set()
-            told |= bool(named.yes) and (named.told or _is_headed(sentence, self._names))
+            is_stated |= bool(named.yes) and (named.told or _is_headed(sentence, self._names))
         chosen = whole.yes | whole.unsure
         if len(chosen) > 1 and (taken_back := afterthoughts(plain)) is not None:
             other = self._names.named(_SIGNS.sub("", taken_back[1]))
@@ -333,7 +333,7 @@ class _Reader:
         if len(chosen) > 1 or whole.unsure or (whole.either and not chosen):
             return chosen or whole.either, True, plain.strip()
         doubts = _UNSURE.search(self._names_removed(plain))
-        if not chosen or not told or doubts:
+        if not chosen or not is_stated or doubts:
             return set(), False, plain.strip()
         again = afterthoughts(plain)
         if again is not None and not again[0].startswith(("actually", "sorry", "no")):
@@ -414,9 +414,9 @@ def read_words(text: str, finish: Finish = "stop") -> AnswerReading:
     said = separate_thinking(text)
     if said.open or not said.text.strip():
         return reading
-    told = [each for each in statements(unfenced(said.text)) if each.kind == "mark"]
+    marked = [each for each in statements(unfenced(said.text)) if each.kind == "mark"]
     lines = [line for line in unfenced(said.text).split("\n") if line.strip()]
-    answer = told[-1].text if told else lines[0] if len(lines) == 1 else ""
+    answer = marked[-1].text if marked else lines[0] if len(lines) == 1 else ""
     answer = answer.strip(" \t\n*_`\"'\u201c\u201d\u2018\u2019").rstrip(".").strip("*_` ")
     if not plain_words(answer).strip():
         reason = f"it states no answer: {excerpt(said.text.strip())}"
@@ -435,7 +435,7 @@ class NamedInWords(NamedOptions):
     alternative: bool = False
 
 
-def named_in_words(answer: str, known: Sequence[str]) -> NamedInWords:
+def named_in_words(answer: str, options: Sequence[str]) -> NamedInWords:
     """Return which known names an answer in words of a model or a person names, and which not.
 
     A name counts as whole words, in any case; a longer name before a shorter one within it. The
@@ -444,19 +444,19 @@ def named_in_words(answer: str, known: Sequence[str]) -> NamedInWords:
 
     Args:
         answer: The answer.
-        known: Names, right and wrong ones.
+        options: Names, right and wrong ones.
     """
-    names = Names(known, lettered=False)
-    found = NamedInWords()
+    names = Names(options, lettered=False)
+    named_words = NamedInWords()
     plain = plain_words(answer)
     for sentence in sentences(plain):
         named = names.named(_concluded(sentence, names))
-        found.yes |= named.yes
-        found.no |= named.no
-        found.unsure |= named.unsure
-        found.aside |= named.aside
+        named_words.yes |= named.yes
+        named_words.no |= named.no
+        named_words.unsure |= named.unsure
+        named_words.aside |= named.aside
         offered = re.search(r"\bor\b|\beither\b|\w\s*/\s*\w", names.without(sentence))
-        found.alternative |= bool(named.yes) and offered is not None
-    if len(found.yes) > 1:
-        found.alternative = False
-    return found
+        named_words.alternative |= bool(named.yes) and offered is not None
+    if len(named_words.yes) > 1:
+        named_words.alternative = False
+    return named_words

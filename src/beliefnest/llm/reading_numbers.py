@@ -58,17 +58,17 @@ def read_numbers(
     if finish == "length":
         return NumbersReading({}, nothing, "cut", "a limit cut the answer off", said.thinking)
     if finish == "content_filter":
-        told = withheld(said.text)
-        return NumbersReading({}, nothing, "unread", told, said.thinking, refused=True)
+        fault = withheld(said.text)
+        return NumbersReading({}, nothing, "unread", fault, said.thinking, refused=True)
     if said.open:
-        told = "the answer is a thought without an end"
-        return NumbersReading({}, nothing, "unread", told, said.thinking)
+        fault = "the answer is a thought without an end"
+        return NumbersReading({}, nothing, "unread", fault, said.thinking)
     lines = [line for part in said.text.split("\n") for line in _parts(part)]
-    found = {name: _last(_line_form(name), lines) for name in names}
+    by_name = {name: _last(_line_form(name), lines) for name in names}
     numbers = {
-        name: value for name, value in found.items() if value is not None and low <= value <= high
+        name: value for name, value in by_name.items() if value is not None and low <= value <= high
     }
-    unclear = [name for name, value in found.items() if value != value]  # noqa: PLR0124 - nan
+    unclear = [name for name, value in by_name.items() if value != value]  # noqa: PLR0124 - nan
     missing = tuple(name for name in names if name not in numbers)
     if not missing:
         return NumbersReading(numbers, (), "read", "", said.thinking)

@@ -134,14 +134,14 @@ def read_program(text: str, finish: Finish = "stop") -> ProgramReading:  # noqa:
 
 
 def _chosen(blocks: list[_Block]) -> _Block | None:
-    known = [each for each in blocks if each.language in _JAVASCRIPT]
+    javascript = [each for each in blocks if each.language in _JAVASCRIPT]
     named = [each for each in blocks if each.language and each.language not in _OTHER]
     plain = [each for each in blocks if not each.language]
-    for some in (known, named, plain):
+    for some in (javascript, named, plain):
         real = [each for each in some if not _is_placeholder(each.code)]
         if real:
             return real[-1]
-    placeholders = [each for each in (*plain, *named, *known) if _is_placeholder(each.code)]
+    placeholders = [each for each in (*plain, *named, *javascript) if _is_placeholder(each.code)]
     return placeholders[-1] if placeholders else None
 
 
@@ -174,9 +174,9 @@ def _repeats_prompt(text: str) -> bool:
 def _blocks(text: str) -> Iterator[_Block]:
     """Yield the fenced blocks of a text, and programs in tags."""
     at = 0
-    found = False
+    has_fence = False
     while opening := _next_opening(text, at):
-        found = True
+        has_fence = True
         fence = opening["fence"]
         info = opening["info"].strip()
         language = re.split(r"[\s,{:;]", info, maxsplit=1)[0].lower() if info else ""
@@ -189,7 +189,7 @@ def _blocks(text: str) -> Iterator[_Block]:
         end, at = _end_of_block(text, start, fence, language)
         code = text[start : at if end is None else end]
         yield _Block(language, code.strip("\n"), closed=end is not None)
-    if not found:
+    if not has_fence:
         for tag in _CODE_TAG.finditer(text):
             code = tag["code"].strip("\n")
             if tag["name"].lower() in ("program", "javascript", "script") or _is_whole(code):
@@ -232,9 +232,9 @@ def _end_of_block(text: str, start: int, fence: str, language: str) -> tuple[int
         rf"(?P<lead>^[ \t>]*)?{re.escape(fence[0])}{{{len(fence)},}}(?P<rest>[^\n]*)$", re.MULTILINE
     )
     first: tuple[int | None, int] | None = None
-    for found in itertools.islice(fences.finditer(text, start), _MOST_FENCES):
-        end, behind = found.start(), found.end() - len(found["rest"])
-        if found["lead"] is not None and found["rest"].strip():
+    for match in itertools.islice(fences.finditer(text, start), _MOST_FENCES):
+        end, behind = match.start(), match.end() - len(match["rest"])
+        if match["lead"] is not None and match["rest"].strip():
             first = first or (None, end)
             continue
         first = first or (end, behind)

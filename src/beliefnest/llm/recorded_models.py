@@ -61,10 +61,10 @@ class ReplayModel:
         """
         left = self.recorded.get(tuple(messages))
         if not left:
-            known = "no answer" if left is None else "no further answer"
+            lacking = "no answer" if left is None else "no further answer"
             last = messages[-1].text if messages else ""
             raise ModelError(
-                f"{self.name} has {known} to this prompt; it differs from the recorded ones, "
+                f"{self.name} has {lacking} to this prompt; it differs from the recorded ones, "
                 f"or the run does. The prompt ends: {excerpt(last[-200:])}"
             )
         return left.popleft().answer

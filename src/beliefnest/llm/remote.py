@@ -134,10 +134,10 @@ class RemoteModel:
             raise self._unreadable(messages, error) from None
 
     def _unreadable(self, messages: Sequence[Message], error: Exception) -> UnusableAnswerError:
-        found: BaseException | None = error
-        while found is not None and not isinstance(found, TooManyBytesError):
-            found = found.__cause__ or found.__context__
-        what = str(found) if found else f"{type(error).__name__}: {error}"
+        cause: BaseException | None = error
+        while cause is not None and not isinstance(cause, TooManyBytesError):
+            cause = cause.__cause__ or cause.__context__
+        what = str(cause) if cause else f"{type(error).__name__}: {error}"
         return UnusableAnswerError(
             f"{self.name} at {self.endpoint.place} gave an answer that cannot be read "
             f"({excerpt(_clean(self, what))}); ask again or use another model",
@@ -375,9 +375,9 @@ def _has_ended(response: "ModelResponse") -> bool:
     Without a reason and without the mark of its end, a stream may be that of a connection that was
     cut, and its answer half of another.
     """
-    told = (response.provider_details or {}).get("finish_reason")
+    reason = (response.provider_details or {}).get("finish_reason")
     # Of a stream without a reason the library says `stop`.
-    return told is not None or response.finish_reason not in (None, "stop")
+    return reason is not None or response.finish_reason not in (None, "stop")
 
 
 def _answer(
@@ -469,19 +469,19 @@ def _unreachable(model: RemoteModel, error: Exception) -> UnavailableModelError 
     failed = _cause(error, httpx2.ConnectError, httpx2.ConnectTimeout, httpx2.ProxyError)
     if failed is None:
         return None
-    told = f"no server for {model.name} at {endpoint.place}"
+    text = f"no server for {model.name} at {endpoint.place}"
     proxy = proxy_variable(endpoint.url)
     if (fault := _cause(error, ssl.SSLError)) is not None:
         return UnavailableModelError(
-            f"{told} with a certificate to be trusted ({excerpt(_clean(model, str(fault)))}); "
+            f"{text} with a certificate to be trusted ({excerpt(_clean(model, str(fault)))}); "
             "name the file of its authority in SSL_CERT_FILE, or correct that variable"
         )
     if proxy is not None:
         return UnavailableModelError(
-            f"{told} through the proxy of {proxy} ({excerpt(_clean(model, str(failed)))}); correct "
+            f"{text} through the proxy of {proxy} ({excerpt(_clean(model, str(failed)))}); correct "
             f"{proxy}, or add the server to NO_PROXY"
         )
-    return UnavailableModelError(f"{told}: {endpoint.advice}")
+    return UnavailableModelError(f"{text}: {endpoint.advice}")
 
 
 def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
@@ -497,14 +497,14 @@ def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
     said = excerpt(_clean(model, str(error)))
     match error:
         case library.ModelAuthenticationError():
-            told = f"{where} refused the key in {model.endpoint.key_variable}: check it"
-            raise UnavailableModelError(told) from None
+            refusal = f"{where} refused the key in {model.endpoint.key_variable}: check it"
+            raise UnavailableModelError(refusal) from None
         case library.ModelNotFoundError():
-            told = f"{where} was not found: check the model's name and the address ({said})"
-            raise UnavailableModelError(told) from None
+            refusal = f"{where} was not found: check the model's name and the address ({said})"
+            raise UnavailableModelError(refusal) from None
         case library.ModelQuotaExceededError():
-            told = f"{where}: the account has no credit left ({said})"
-            raise UnavailableModelError(told) from None
+            refusal = f"{where}: the account has no credit left ({said})"
+            raise UnavailableModelError(refusal) from None
         case library.ModelContextWindowExceededError():
             message = f"{where}: the prompt is longer than the model can read; shorten it"
         case library.ModelRateLimitError(retry_after=seconds):

@@ -97,8 +97,8 @@ class RetryingModel:
                     raise UnavailableModelError(
                         f"{error} and asks to wait {wait:,.0f} s; try again after that"
                     ) from None
-                told = str(error)
-            self._wait_for_quota(told, wait)
+                message = str(error)
+            self._wait_for_quota(message, wait)
 
     def _wait_for_quota(self, why: str, seconds: float) -> None:
         """Wait as long as the provider asked for, with a line of progress each minute."""

@@ -31,9 +31,9 @@ class Secrets:
     """
 
     def __init__(self, values: Iterable[str]) -> None:
-        known = sorted({value for value in values if value}, key=len, reverse=True)
-        self._everywhere = _pattern(known)
-        self._in_answers = _pattern(v for v in known if len(v) >= _SHORTEST_IN_ANSWERS)
+        values_by_length = sorted({value for value in values if value}, key=len, reverse=True)
+        self._everywhere = _pattern(values_by_length)
+        self._in_answers = _pattern(v for v in values_by_length if len(v) >= _SHORTEST_IN_ANSWERS)
 
     def __repr__(self) -> str:
         return "<secrets>"
@@ -55,11 +55,11 @@ def secrets_in(url: str) -> list[str]:
     """
     parts = urlsplit(url)
     query = (value for name, value in parse_qsl(parts.query) if _SECRET_PARAMETER.search(name))
-    found = [parts.password or parts.username or "", *query]
+    forms = [parts.password or parts.username or "", *query]
     if parts.username or parts.password:
         sent = f"{unquote(parts.username or '')}:{unquote(parts.password or '')}"
-        found += [sent, base64.b64encode(sent.encode(errors="surrogatepass")).decode()]
-    return [form for each in found for form in (each, unquote(each))]
+        forms += [sent, base64.b64encode(sent.encode(errors="surrogatepass")).decode()]
+    return [form for each in forms for form in (each, unquote(each))]
 
 
 def without_password(url: str) -> str:
@@ -86,7 +86,7 @@ def _forms(secret: str) -> Iterator[str]:
     for plain in (secret, *escapes):
         yield re.escape(plain)
     for encoded in (quote(secret), quote(secret, safe=""), quote_plus(secret)):
-        yield re.sub(r"%[0-9A-F]{2}", lambda found: f"(?i:{found[0]})", re.escape(encoded))
+        yield re.sub(r"%[0-9A-F]{2}", lambda match: f"(?i:{match[0]})", re.escape(encoded))
     # Hexadecimal bytes, then base64 of a longer text that contains the secret: its encoding
     # depends on the number of preceding bytes modulo 3, and may use either alphabet.
     content = secret.encode(errors="surrogatepass")

@@ -133,11 +133,11 @@ class Statement:
 
 def statements(text: str) -> list[Statement]:
     """Return all statements of a text, in their order; later ones count more."""
-    found = [*_boxed(text), *_tagged(text), *_json(text), *_lines(text), *_sentences(text)]
+    candidates = [*_boxed(text), *_tagged(text), *_json(text), *_lines(text), *_sentences(text)]
     # A mark inside of another one's value is that value.
-    found.sort(key=lambda each: (each.start, -each.end))
+    candidates.sort(key=lambda each: (each.start, -each.end))
     kept: list[Statement] = []
-    for each in found:
+    for each in candidates:
         outer = next((k for k in kept if k.start <= each.start and each.end <= k.end), None)
         if outer is None:
             kept.append(each)
@@ -173,9 +173,9 @@ def _json(text: str) -> Iterator[Statement]:
         if value is None:
             at += 1
             continue
-        told = list(_answers_in(value))
-        if told:
-            yield Statement(at, end, " ; ".join(told), alone=True)
+        answers = list(_answers_in(value))
+        if answers:
+            yield Statement(at, end, " ; ".join(answers), alone=True)
         at = end
 
 
@@ -225,8 +225,8 @@ def _values(value: Any) -> Iterator[str]:
             for each in value:
                 yield from _values(each)
         case dict():
-            found = list(_answers_in(value))
-            yield from found or (str(each) for each in value.values() if isinstance(each, str))
+            answers = list(_answers_in(value))
+            yield from answers or (str(each) for each in value.values() if isinstance(each, str))
 
 
 def _lines(text: str) -> Iterator[Statement]:
@@ -302,12 +302,12 @@ def afterthoughts(text: str) -> tuple[str, str] | None:
     kept = "\n".join(
         line for line in text.split("\n") if not _REASON_LINE.match(line[:_LONGEST_LINE])
     )
-    found = None
+    afterthought = None
     at = 0
     while match := _AFTER.search(kept, at):
-        found = match["sign"].lower(), match["rest"]
+        afterthought = match["sign"].lower(), match["rest"]
         at = match.end("sign")
-    return found
+    return afterthought
 
 
 def without_made_up_turns(text: str) -> list[str]:
@@ -322,8 +322,8 @@ def without_made_up_turns(text: str) -> list[str]:
 
 def given_reason(text: str) -> str:
     """Return the text after the last `Reason:`; empty: there is none."""
-    found = _REASON.search(text)
-    return found[1].strip() if found else ""
+    match = _REASON.search(text)
+    return match[1].strip() if match else ""
 
 
 def unfenced(text: str) -> str:

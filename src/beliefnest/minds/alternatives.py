@@ -155,7 +155,7 @@ class AlternativeWorlds:
         if not self.has_one_view:
             return sorted(names)
         poses = {name: {world.agents.get(name) for world in self.worlds} for name in names}
-        return sorted(name for name, known in poses.items() if len(known) > 1)
+        return sorted(name for name, possible in poses.items() if len(possible) > 1)
 
     @property
     def can_differ(self) -> bool:
@@ -281,8 +281,8 @@ class AlternativeWorlds:
     def _is_known(self) -> npt.NDArray[np.bool_]:
         """By number of a chunk, True if a cell of it is known."""
         blocks = self.worlds[0].blocks
-        known = np.array([bool((chunk >= 0).any()) for chunk in blocks.chunks], dtype=np.bool_)
-        return known[blocks.rows]
+        is_known = np.array([bool((chunk >= 0).any()) for chunk in blocks.chunks], dtype=np.bool_)
+        return is_known[blocks.rows]
 
     def _chunks_around(self, place: npt.NDArray[np.float64], far: float | None) -> Cells:
         """Return the indices of the first cells of the known chunks within a distance."""

@@ -133,8 +133,8 @@ def _utility_scale(inference: Posterior) -> tuple[float, float]:
 def _panel(inference: Posterior, name: str) -> PosteriorPanel:
     kinds = {factor.partition(".")[0] for factor in inference.factors} - {"cell"}
     if name not in kinds and (name not in inference.factors or name == "cell"):
-        known = ", ".join([*sorted(kinds), *inference.factors[:-1]])
-        raise InputError(f"{name!r} cannot be plotted; there are {known}")
+        plottable = ", ".join([*sorted(kinds), *inference.factors[:-1]])
+        raise InputError(f"{name!r} cannot be plotted; there are {plottable}")
     ticks = inference.ticks
     if name not in kinds or name == "rationality":
         shares = [inference.marginal(name, tick) for tick in ticks]
@@ -156,13 +156,13 @@ def _panel(inference: Posterior, name: str) -> PosteriorPanel:
 
 def _notes(inference: Posterior) -> list[NotedAct]:
     """Return the most informative actions, and the impossible one, if any."""
-    told = [
+    acts = [
         (max(bits.values()), change)
         for change in inference.explain()
         if change.is_action
         and (bits := {k: v for k, v in change.bits.items() if not k.startswith("actual.")})
     ]
-    most = sorted((each for each in told if each[0] >= _LEAST_BITS), key=lambda each: -each[0])
+    most = sorted((each for each in acts if each[0] >= _LEAST_BITS), key=lambda each: -each[0])
     changes = sorted((change for _, change in most[:_MOST_NOTES]), key=lambda each: each.tick)
     notes = [NotedAct(change.tick, f"{change.tick}: {change.text}") for change in changes]
     if (failed := inference.impossible) is not None:

@@ -60,6 +60,6 @@ class EvidenceEffect:
 
     def __str__(self) -> str:
         # Rounded as told: last bits, which differ between machines, must not decide the order.
-        told = sorted(self.bits.items(), key=lambda pair: -round(pair[1], 2))
-        words = ", ".join(f"{name} by {bits:.2f} bits" for name, bits in told if bits >= 0.005)
+        effects = sorted(self.bits.items(), key=lambda pair: -round(pair[1], 2))
+        words = ", ".join(f"{name} by {bits:.2f} bits" for name, bits in effects if bits >= 0.005)
         return f"tick {self.tick}: the agent {self.text}; this changes {words or 'nothing'}"

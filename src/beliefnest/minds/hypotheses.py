@@ -135,10 +135,10 @@ class Layer:
 
     @cached_property
     def _by_target(self) -> Mapping[WalkState, Sequence[tuple[WalkState, Action | None]]]:
-        found: dict[WalkState, list[tuple[WalkState, Action | None]]] = {}
+        sources: dict[WalkState, list[tuple[WalkState, Action | None]]] = {}
         for source, target, action in self.edges:
-            found.setdefault(target, []).append((source, action))
-        return found
+            sources.setdefault(target, []).append((source, action))
+        return sources
 
 
 class Sums:

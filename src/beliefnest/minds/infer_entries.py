@@ -85,22 +85,22 @@ def build_inferring(
 
 
 def _credences(document: Document, path: KeyPath, entry: InferEntry) -> Any:
-    given = entry.credences
-    if not isinstance(given, GridEntry):
-        return given
+    credences = entry.credences
+    if not isinstance(credences, GridEntry):
+        return credences
     with document.naming(path):
-        return simplex_grid(len(entry.doubt or {}) or 1, given.grid, given.smoothing)
+        return simplex_grid(len(entry.doubt or {}) or 1, credences.grid, credences.smoothing)
 
 
 def _utilities(document: Document, path: KeyPath, entry: InferEntry) -> Any:
-    given = entry.utilities
-    if isinstance(given, list):
-        return given
+    utilities = entry.utilities
+    if isinstance(utilities, list):
+        return utilities
     return {
         goal: _levels(document, (*path, goal), levels)
         if isinstance(levels, LevelsEntry)
         else levels
-        for goal, levels in given.items()
+        for goal, levels in utilities.items()
     }
 
 
@@ -116,9 +116,9 @@ def _levels(document: Document, path: KeyPath, entry: LevelsEntry) -> list[float
 
 def _check_count(document: Document, path: KeyPath, entry: InferEntry) -> None:
     """Refuse more hypotheses than fit into memory before creating them."""
-    given, alternatives = entry.utilities, len(entry.doubt or {}) or 1
-    count = len(given) if isinstance(given, list) else 1
-    for levels in () if isinstance(given, list) else given.values():
+    utilities, alternatives = entry.utilities, len(entry.doubt or {}) or 1
+    count = len(utilities) if isinstance(utilities, list) else 1
+    for levels in () if isinstance(utilities, list) else utilities.values():
         if isinstance(levels, LevelsEntry):
             low, high = levels.range
             count *= math.floor((high - low) / levels.step + _SLACK) + 1

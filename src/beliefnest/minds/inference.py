@@ -222,7 +222,7 @@ class Inference:
                 return self._rerun(tick).predict(steps)
         step = self._known[-1]
         actual = self._log_actual(step)
-        found = []
+        predictions = []
         trackers = [tracker.again() for tracker in self._trackers]
         for _ in range(steps):
             shares: dict[Position, list[float]] = {}
@@ -231,8 +231,8 @@ class Inference:
                 for a, masses in enumerate(tracker.masses()):
                     for state, mass in masses.items():
                         shares.setdefault(state[0], []).append(float(actual[a] + log_sum(mass)))
-            found.append(_shares(shares))
-        return found
+            predictions.append(_shares(shares))
+        return predictions
 
     def sample_paths(self, n: int, seed: int = 0) -> list[SampledPath]:
         """Draw hypotheses from the posterior, with courses that agree with all evidence.
@@ -331,11 +331,11 @@ class Inference:
         weights = self.model.actual_weights
         names = self.model.alternative_names
         agrees = -1 if step is None else step.agrees
-        given = [1.0 if weights is None else weights[name] for name in names]
+        shares = [1.0 if weights is None else weights[name] for name in names]
         if weights is None:
-            given = [weight * (agrees >> a & 1) for a, weight in enumerate(given)]
+            shares = [weight * (agrees >> a & 1) for a, weight in enumerate(shares)]
         with np.errstate(divide="ignore"):
-            logs: Floats = np.log(np.array(given)) - np.log(sum(given))
+            logs: Floats = np.log(np.array(shares)) - np.log(sum(shares))
         return logs
 
     @cached_property
@@ -443,17 +443,17 @@ class Inference:
         a, b, u, w = (int(part) for part in np.unravel_index(number, posterior.shape))
         model = self.model
         names = model.alternative_names
-        told: dict[str, Any] = {
+        report: dict[str, Any] = {
             f"utility.{goal}": float(model.utility_rows[u, n]) for n, goal in enumerate(model.goals)
         }
         if model.doubt is not None:
-            told |= {
+            report |= {
                 f"credence.{name}": float(model.credence_rows[w, n]) for n, name in enumerate(names)
             }
-            told["actual"] = names[a]
+            report["actual"] = names[a]
         if len(model.rationalities) > 1:
-            told["rationality"] = model.rationalities[b]
-        return {**told, "probability": float(posterior[a, b, u, w])}
+            report["rationality"] = model.rationalities[b]
+        return {**report, "probability": float(posterior[a, b, u, w])}
 
 
 def _merged(parts: Sequence[Sequence[FilterStep]]) -> list[FilterStep]:
@@ -465,18 +465,18 @@ def _merged(parts: Sequence[Sequence[FilterStep]]) -> list[FilterStep]:
 
 def _joined_steps(parts: Sequence[Sequence[FilterStep]]) -> Iterator[FilterStep]:
     longest = max(parts, key=len)
-    for number, told in enumerate(longest):
+    for number, longest_step in enumerate(longest):
         at = [steps[min(number, len(steps) - 1)] for steps in parts]
         weights = np.concatenate([step.weights for step in at], axis=2)
         states = []
-        for a in range(len(told.states)):
+        for a in range(len(longest_step.states)):
             logs: dict[Any, list[Floats]] = {}
             for step in at:
                 for state, mass in step.states[a].items():
                     logs.setdefault(state, []).append(mass)
             states.append({state: log_sum(np.stack(each)) for state, each in logs.items()})
         is_possible = any(step.is_possible for step in at)
-        yield replace(told, weights=weights, states=tuple(states), is_possible=is_possible)
+        yield replace(longest_step, weights=weights, states=tuple(states), is_possible=is_possible)
 
 
 def _shares(logs: Mapping[Any, Sequence[float]]) -> dict[Any, float]:

@@ -20,7 +20,7 @@ def smoothed_steps(tracker: Tracker) -> list[FilterStep]:
     """Return the steps of a filter, with their states conditioned on all evidence."""
     by_actual = [_smoothed(tracker, actual, layers) for actual, layers in enumerate(tracker.trail)]
     count = len(tracker.hypotheses.credences)
-    found = []
+    steps = []
     for step in tracker.steps:
         masses = []
         for layers, moments in zip(tracker.trail, by_actual, strict=True):
@@ -31,8 +31,8 @@ def smoothed_steps(tracker: Tracker) -> list[FilterStep]:
                     for state, weight in joint.items()
                 }
             )
-        found.append(replace(step, states=tuple(masses)))
-    return found
+        steps.append(replace(step, states=tuple(masses)))
+    return steps
 
 
 def sampled_cells(
@@ -84,7 +84,7 @@ def _smoothed(
     ahead: dict[WalkState, Floats] = {
         state: np.zeros_like(weight) for state, weight in last.items()
     }
-    found: list[Mapping[WalkState, Floats]] = [last]
+    masses: list[Mapping[WalkState, Floats]] = [last]
     for layer in reversed(layers):
         parts: dict[WalkState, list[Floats]] = {}
         for source, target, action in layer.edges:
@@ -96,8 +96,8 @@ def _smoothed(
             state: each[0] if len(each) == 1 else log_sum(np.stack(each))
             for state, each in parts.items()
         }
-        found.append({state: layer.before[state] + weight for state, weight in ahead.items()})
-    return found[::-1]
+        masses.append({state: layer.before[state] + weight for state, weight in ahead.items()})
+    return masses[::-1]
 
 
 def _boundary(layers: Sequence[Layer], tick: int) -> int:

@@ -232,12 +232,14 @@ class MindModel:
                 raise InputError(f"{name} is {quoted(getattr(self, name))}; give True or False")
         if not _is_number(self.lapse) or not 0 <= self.lapse <= 1:
             raise InputError(f"lapse is {quoted(self.lapse)}; give a number from 0 to 1")
-        given: Any = self.rationality
-        listed: list[Any] = [given] if _is_number(given) else list(_listed("rationality", given))
+        numbers: Any = self.rationality
+        listed: list[Any] = (
+            [numbers] if _is_number(numbers) else list(_listed("rationality", numbers))
+        )
         if not listed or not all(_is_number(each) and each >= 0 for each in listed):
-            raise InputError(f"rationality is {quoted(given)}; give numbers that are 0 or more")
+            raise InputError(f"rationality is {quoted(numbers)}; give numbers that are 0 or more")
         if len(set(listed)) < len(listed):
-            raise InputError(f"rationality is {quoted(given)}; name each value once")
+            raise InputError(f"rationality is {quoted(numbers)}; name each value once")
         self._set("rationalities", tuple(float(each) for each in listed))
 
 
@@ -370,8 +372,8 @@ def _read_goals(goals: object) -> Mapping[str, PossibleGoal]:
             read[name] = PossibleGoal(at=_cell(f"goal {quoted(name)}", value))
             continue
         text = str(value).removeprefix("minecraft:")
-        known = registry.has_block(text) if kind == "block" else registry.has_item(text)
-        if not known:
+        is_known = registry.has_block(text) if kind == "block" else registry.has_item(text)
+        if not is_known:
             raise InputError(
                 f"goal {quoted(name)} is about {kind} {quoted(value)}, which does not exist"
             )
@@ -384,8 +386,8 @@ def _utility_rows(utilities: object, goals: Sequence[str]) -> Floats:
         _check_goal_names(utilities, goals)
         values = []
         for goal in goals:
-            given = utilities[goal]
-            values.append([given] if _is_number(given) else list(_listed(goal, given)))
+            levels = utilities[goal]
+            values.append([levels] if _is_number(levels) else list(_listed(goal, levels)))
             if not values[-1]:
                 raise InputError(f"goal {quoted(goal)} has no utility; give at least one value")
         rows = list(itertools.product(*values))
@@ -406,21 +408,21 @@ def _utility_rows(utilities: object, goals: Sequence[str]) -> Floats:
     return np.array(rows, dtype=np.float64)
 
 
-def _check_goal_names(given: Mapping[object, object], goals: Sequence[str]) -> None:
-    unknown = [str(name) for name in given if name not in goals]
-    missing = [name for name in goals if name not in given]
+def _check_goal_names(by_goal: Mapping[object, object], goals: Sequence[str]) -> None:
+    unknown = [str(name) for name in by_goal if name not in goals]
+    missing = [name for name in goals if name not in by_goal]
     faults = [f"name unknown goals ({', '.join(unknown)})"] if unknown else []
     faults += [f"lack values for {', '.join(missing)}"] if missing else []
     if faults:
         raise InputError(f"utilities {' and '.join(faults)}; the goals are {', '.join(goals)}")
 
 
-def _credence_rows(given: object, names: Sequence[str], doubts: bool) -> Floats:
-    if given is None:
+def _credence_rows(credences: object, names: Sequence[str], doubts: bool) -> Floats:
+    if credences is None:
         return np.full((1, len(names)), 1 / len(names))
     if not doubts:
         raise InputError("credences are given without a doubt; give its alternatives")
-    rows = _array("credences", given)
+    rows = _array("credences", credences)
     if rows.ndim != 2 or rows.shape[1] != len(names) or not len(rows):
         raise InputError(
             f"credences have shape {rows.shape}; give rows over the {len(names)} alternatives "
@@ -437,10 +439,10 @@ def _credence_rows(given: object, names: Sequence[str], doubts: bool) -> Floats:
     return rows
 
 
-def _prior(given: object, shape: tuple[int, int]) -> Floats:
-    if given is None:
+def _prior(weights: object, shape: tuple[int, int]) -> Floats:
+    if weights is None:
         return np.full(shape, 1 / (shape[0] * shape[1]))
-    prior = _array("prior", given)
+    prior = _array("prior", weights)
     if prior.shape != shape:
         raise InputError(
             f"the prior has shape {prior.shape}; give {shape[0]} utilities by {shape[1]} credences"
@@ -491,9 +493,9 @@ def _listed(name: str, values: object) -> Iterable[Any]:
     return values
 
 
-def _array(name: str, given: object) -> Floats:
+def _array(name: str, values: object) -> Floats:
     try:
-        return np.array(given, dtype=np.float64)
+        return np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(f"{name} are no table of numbers; give rows of equal length") from None
 

@@ -143,17 +143,17 @@ def _work_on(
             f"since is {since}, after the last tick, {moment.tick}; give an earlier one"
         )
     key = ("inference", moment.timeline, repr(question))
-    known = recording.remembered.pop(key, None)
-    if isinstance(known, _Work) and known.goes_on(recording, moment.tick):
-        work = known
+    older = recording.remembered.pop(key, None)
+    if isinstance(older, _Work) and older.goes_on(recording, moment.tick):
+        work = older
     else:
         work = _Work(CourseReading(recording, question), recording.history.generation)
     work.reading.read(until)
     work.generation = recording.history.generation
-    if not isinstance(known, _Work) or work is known or work.reading.latest >= known.reading.latest:
+    if not isinstance(older, _Work) or work is older or work.reading.latest >= older.reading.latest:
         recording.remembered[key] = work
     else:
-        recording.remembered[key] = known
+        recording.remembered[key] = older
     kept = [other for other in recording.remembered if isinstance(other, tuple)]
     for other in kept[:-_MOST_READINGS]:
         del recording.remembered[other]
@@ -310,7 +310,7 @@ def credence_in(
         float(agrees >> a & 1) if weights is None else weights[name] for a, name in enumerate(names)
     ]
     total = np.zeros(len(names))
-    known = known_after(reading.moments, len(names))
-    for share, (possible, believed) in zip(shares, known, strict=True):
+    knowledge = known_after(reading.moments, len(names))
+    for share, (possible, believed) in zip(shares, knowledge, strict=True):
         total += share * reported_credence(model.credence_rows[0], possible, believed, model.lapse)
     return dict(zip(names, (total / sum(shares)).tolist(), strict=True))

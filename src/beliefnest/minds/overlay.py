@@ -132,15 +132,15 @@ class Overlay:
                 self._contents[spot] = [
                     changed_items(each, items, sign) for each in self._contents[spot]
                 ]
-        for place, held in now.contents.items():
+        for place, content in now.contents.items():
             old = before.contents[place]
-            if place in moved or held is None or old is None:
+            if place in moved or content is None or old is None:
                 continue
-            if old.complete and held.complete and dict(old.items) != dict(held.items):
-                self._contents[place] = [dict(held.items)] * len(self._names)
+            if old.complete and content.complete and dict(old.items) != dict(content.items):
+                self._contents[place] = [dict(content.items)] * len(self._names)
         for name, (pose, is_current) in now.poses.items():
-            known, was_current = before.poses[name]
-            if pose is not None and is_current and was_current and pose != known:
+            pose_before, was_current = before.poses[name]
+            if pose is not None and is_current and was_current and pose != pose_before:
                 self._feet.pop(name, None)
 
     def agreeing(self) -> int:
@@ -151,10 +151,10 @@ class Overlay:
             if state >= 0:
                 for a, mine in enumerate(self._blocks[place]):
                     agrees[a] &= mine == state or self._is(self._texts[place][a], state)
-        for place, held in self._held.contents.items():
-            if held is not None:
+        for place, content in self._held.contents.items():
+            if content is not None:
                 for a, items in enumerate(self._contents[place]):
-                    agrees[a] &= _fits(items, held)
+                    agrees[a] &= _fits(items, content)
         for name, (pose, _) in self._held.poses.items():
             if pose is not None and name in self._feet:
                 for a, feet in enumerate(self._feet[name]):
@@ -165,9 +165,9 @@ class Overlay:
         """Return the state of the node with the edits of each alternative."""
         count = len(self._names)
         contents: dict[Position, Items] = {
-            place: dict(held.items)
-            for place, held in view.containers.items()
-            if held.items or held.complete
+            place: dict(content.items)
+            for place, content in view.containers.items()
+            if content.items or content.complete
         }
         poses: dict[str, AgentPose] = {
             name: (agent.position, agent.yaw, agent.pitch)
@@ -175,7 +175,7 @@ class Overlay:
             if agent.position is not None and name != self._agent
         }
         made: dict[tuple[int, ...], Terrain] = {}
-        found = []
+        worlds = []
         for a in range(count):
             key = tuple(states[a] for states in self._blocks.values())
             if key not in made:
@@ -184,9 +184,9 @@ class Overlay:
                     draft[self._box.index(place)] = state
                 made[key] = draft.terrain()
             mine = {place: items[a] for place, items in self._contents.items()}
-            feet = {name: (known[a], 0.0, 0.0) for name, known in self._feet.items()}
-            found.append(AlternativeWorld(made[key], {**contents, **mine}, {**poses, **feet}))
-        return found
+            feet = {name: (places[a], 0.0, 0.0) for name, places in self._feet.items()}
+            worlds.append(AlternativeWorld(made[key], {**contents, **mine}, {**poses, **feet}))
+        return worlds
 
     def digest(self, view: NodeView) -> bytes:
         """Return a digest of everything on which `worlds` and the node's items depend."""
@@ -197,8 +197,8 @@ class Overlay:
             [(at, [sorted(i.items()) for i in items]) for at, items in self._contents.items()],
             list(self._feet.items()),
             [
-                (at, sorted(held.items.items()), held.complete)
-                for at, held in view.containers.items()
+                (at, sorted(content.items.items()), content.complete)
+                for at, content in view.containers.items()
             ],
             [
                 (name, agent.position, agent.yaw, agent.pitch)
@@ -229,10 +229,10 @@ class Overlay:
         return all(properties.get(key) == value for key, value in chosen.items())
 
 
-def _fits(items: Items, held: ContainerBelief) -> bool:
-    if held.complete:
-        return dict(items) == dict(held.items)
-    return all(items.get(name, 0) >= count for name, count in held.items.items())
+def _fits(items: Items, content: ContainerBelief) -> bool:
+    if content.complete:
+        return dict(items) == dict(content.items)
+    return all(items.get(name, 0) >= count for name, count in content.items.items())
 
 
 def pose_of(agent: AgentBelief) -> AgentPose | None:

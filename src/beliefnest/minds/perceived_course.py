@@ -116,9 +116,9 @@ class CourseReading:
         paths = [question.path]
         if recording.context.options.testimony != "none":
             paths.append(self._agent_path)
-        told: tuple[int, ...] = ()
+        past: tuple[int, ...] = ()
         if start and self.moments and self.moments[0].tick == tick:
-            told = self._begin_again()
+            past = self._begin_again()
         self._forest = recording.history.walk(key, paths)
         recording.history.advance(key, self._forest, start)
         self._key, self._position = key, start
@@ -126,8 +126,8 @@ class CourseReading:
         first = recording.journal.entries_until(key, tick - 1) if start else 0
         before = recording.journal.events_until(key, first) if start else 0
         self._take(tick, claims, before)
-        if told:
-            self.moments[0] = replace(self.moments[0], claims=told + self.moments[0].claims)
+        if past:
+            self.moments[0] = replace(self.moments[0], claims=past + self.moments[0].claims)
 
     def _begin_again(self) -> tuple[int, ...]:
         """Drop what was read of the first tick: a branch begins there, and was edited there.
@@ -135,7 +135,7 @@ class CourseReading:
         Returns:
             The claims that the agent took up in that tick before the edit, as in `EvidenceMoment`.
         """
-        told = tuple(mask for moment in self.moments for mask in moment.claims)
+        claims = tuple(mask for moment in self.moments for mask in moment.claims)
         question, context = self.question, self.recording.context
         self._overlay = Overlay(
             question.alternatives,
@@ -145,7 +145,7 @@ class CourseReading:
             question.agent,
         )
         self.moments, self._agrees = [], -1
-        return told
+        return claims
 
     @property
     def _agent_path(self) -> BeliefPath:

@@ -64,8 +64,8 @@ class _Values:
         """Return values of some cells for some kinds: (cells, utilities, credences)."""
         mine = self.kinds
         utility, credence = mine.of_utility[kinds.utilities], mine.of_credence[kinds.credences]
-        found: Floats = self.table[self.rows[cells]][:, utility][:, :, credence]
-        return found
+        values: Floats = self.table[self.rows[cells]][:, utility][:, :, credence]
+        return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,19 +117,19 @@ class StagePlanner:
     ) -> Floats:
         """Log probabilities (actions, rationalities, utilities, credences or 1) in a state."""
         key = (cell, knowledge, rationalities)
-        found = self._policies.get(key)
-        if found is None:
+        policy = self._policies.get(key)
+        if policy is None:
             q = self.q(cell, knowledge)
             betas = np.array(rationalities)[:, None, None]
             # An unavailable action has probability 0, even for an irrational agent.
             there = np.logical_or.reduce(np.isfinite(q), axis=(1, 2))
             scaled = np.where(there[:, None, None], q, 0.0)[:, None] * betas
             scaled[~there] = -np.inf
-            found = self._policies[key] = scaled - log_sum(scaled)
-            self.size += found.nbytes
-            while len(self._policies) * found.nbytes > _POLICY_ROOM:
+            policy = self._policies[key] = scaled - log_sum(scaled)
+            self.size += policy.nbytes
+            while len(self._policies) * policy.nbytes > _POLICY_ROOM:
                 self.size -= self._policies.pop(next(iter(self._policies))).nbytes
-        return found
+        return policy
 
     def actions(self, cell: int, knowledge: Knowledge) -> npt.NDArray[np.bool_]:
         """Return a mask of the available actions: stay, steps, openings, acts on goals."""
@@ -182,8 +182,8 @@ class StagePlanner:
         return q[:, kinds.of_utility][:, :, kinds.of_credence]
 
     def _kinds_of(self, believed: int) -> _Kinds:
-        found = self._kinds.get(believed)
-        if found is None:
+        kinds = self._kinds.get(believed)
+        if kinds is None:
             members = numbers_in(believed)
             if len(members) == 1:
                 weights = np.ones((1, len(self._credences)))
@@ -196,21 +196,21 @@ class StagePlanner:
             there = np.logical_or.reduce(self.stage.acts[members], axis=(0, 2))
             utilities, of_utility = _distinct(self._utilities[:, there])
             credences, of_credence = _distinct(weights.T)
-            found = self._kinds[believed] = _Kinds(
+            kinds = self._kinds[believed] = _Kinds(
                 utilities, of_utility, credences, of_credence, weights[:, credences]
             )
-        return found
+        return kinds
 
     def _differs(self, box: int, possible: int) -> bool:
         first = numbers_in(possible)[0]
         return int(self.stage.content[box, first]) & possible != possible
 
     def _solve(self, knowledge: Knowledge) -> _Values:
-        found = self._solved.get(knowledge)
-        if found is None:
-            found = self._solved[knowledge] = self._computed(knowledge)
-            self.size += found.table.nbytes
-        return found
+        values = self._solved.get(knowledge)
+        if values is None:
+            values = self._solved[knowledge] = self._computed(knowledge)
+            self.size += values.table.nbytes
+        return values
 
     def _computed(self, knowledge: Knowledge) -> _Values:
         stage, rules = self.stage, self.rules
@@ -324,14 +324,14 @@ class _Cache:
         self, stage: Stage, key: bytes, make: Callable[[Stage], StagePlanner]
     ) -> StagePlanner:
         key = stage.key + key
-        found = self._planners.pop(key, None) or make(stage)
-        room = _ROOM - found.size
+        planner = self._planners.pop(key, None) or make(stage)
+        room = _ROOM - planner.size
         for other in reversed(list(self._planners)):
             room -= self._planners[other].size
             if room < 0:
                 del self._planners[other]
-        self._planners[key] = found
-        return found
+        self._planners[key] = planner
+        return planner
 
 
 @lru_cache(maxsize=1)

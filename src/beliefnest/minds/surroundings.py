@@ -72,9 +72,9 @@ class Surroundings:
         Raises:
             TooLargeError: The planner has no room for so many cells.
         """
-        for known in self._stages.values():
-            if all(cell in known.index for cell in cells):
-                return known
+        for stage in self._stages.values():
+            if all(cell in stage.index for cell in cells):
+                return stage
         limit, each = memory_limit(), self._cell_bytes
         most = _MOST_CELLS if limit is None else min(_MOST_CELLS, limit.bytes // each)
         ways = ways_from(self.worlds.box, self._floors, cells, diagonal=self._diagonal, most=most)
@@ -191,8 +191,8 @@ class Surroundings:
                     if item.name == goal.item
                 ]
                 for a, world in enumerate(worlds):
-                    held = [p for p, items in world.contents.items() if items.get(goal.item or "")]
-                    acts[a, number] = self._reached(world.blocks, cells, [*held, *dropped])
+                    sites = [p for p, items in world.contents.items() if items.get(goal.item or "")]
+                    acts[a, number] = self._reached(world.blocks, cells, [*sites, *dropped])
         return acts
 
     def _openings(
@@ -234,10 +234,10 @@ class _Stages:
         self._kept: OrderedDict[bytes, Stage] = OrderedDict()
 
     def get(self, key: bytes) -> Stage | None:
-        found = self._kept.get(key)
-        if found is not None:
+        stage = self._kept.get(key)
+        if stage is not None:
             self._kept.move_to_end(key)
-        return found
+        return stage
 
     def put(self, key: bytes, stage: Stage) -> None:
         self._kept[key] = stage

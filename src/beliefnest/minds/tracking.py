@@ -308,13 +308,13 @@ class Tracker:
         if cell not in stage.index:
             # The observer did not know before that an agent can stand there.
             stage = stage_of(moment.scene, before, cell)
-        found: list[Mapping[WalkState, Floats]] = []
+        states: list[Mapping[WalkState, Floats]] = []
         for actual, weights in enumerate(self.states):
             steps = shortest(stage, actual, before, cell)
-            found.append(
+            states.append(
                 {} if steps is None else self._way(stage, actual, weights, cell, steps, moment.tick)
             )
-        return tuple(found)
+        return tuple(states)
 
     def _way(
         self,
@@ -338,12 +338,12 @@ class Tracker:
         return sums.total()
 
     def _seen(self, stage: Stage, states: WalkStates, cell: Position) -> WalkStates:
-        found = []
+        states_now = []
         for actual, weights in enumerate(states):
             sums = self._sums(actual, self.tick, weights)
             arrive(self.hypotheses, stage, actual, weights, cell, sums)
-            found.append(sums.total())
-        return tuple(found)
+            states_now.append(sums.total())
+        return tuple(states_now)
 
     def _did(self, stage: Stage, moment: EvidenceMoment) -> WalkStates:
         """Advance over a perceived opening or act on a goal."""
@@ -353,23 +353,23 @@ class Tracker:
             action = 1 + stage.moves.shape[2] + stage.box_index[moment.opened]
         else:
             return tuple({} for _ in self.states)
-        found = []
+        states = []
         for actual, weights in enumerate(self.states):
             sums = self._sums(actual, moment.tick, weights)
             act(self.hypotheses, stage, weights, (action,), sums, ends=moment.act is not None)
-            found.append(sums.total())
-        return tuple(found)
+            states.append(sums.total())
+        return tuple(states)
 
     def _end(self, tick: int) -> None:
         """Advance over the act after the last tick."""
         assert self._moment is not None
-        found = []
+        states = []
         for actual, weights in enumerate(self.states):
             sums = self._sums(actual, tick, weights)
             for stage, part in by_stage(self._moment.scene, weights):
                 act(self.hypotheses, stage, part, goal_acts(stage), sums, ends=True)
-            found.append(sums.total())
-        self.states = tuple(found)
+            states.append(sums.total())
+        self.states = tuple(states)
         self._note(tick, f"acts on a goal where it is, at {self._cell}, and ends", _ENDS)
 
     # Gaps
@@ -390,12 +390,12 @@ class Tracker:
     def _unseen_action(
         self, scene: Surroundings, moment: EvidenceMoment, states: WalkStates
     ) -> WalkStates:
-        found = []
+        states_now = []
         for actual, weights in enumerate(states):
             moved = self._spread_all(scene, actual, weights, self.tick)
             hidden = unseen(moment, actual, moved)
-            found.append(self._look_round(moment.scene, actual, hidden, self.tick))
-        return tuple(found)
+            states_now.append(self._look_round(moment.scene, actual, hidden, self.tick))
+        return tuple(states_now)
 
     def _spread_all(
         self, scene: Surroundings, actual: int, weights: Mapping[WalkState, Floats], tick: int
@@ -417,17 +417,17 @@ class Tracker:
             # The observer did not know before that an agent can stand there.
             last = replace(last, scene=moment.scene)
             gap.moments[-1] = last
-        found: list[Mapping[WalkState, Floats]] = []
+        states: list[Mapping[WalkState, Floats]] = []
         for actual in range(self.hypotheses.alternatives):
             stage = stage_of(last.scene, gap.cell, moment.cell)
             steps = shortest(stage, actual, gap.cell, moment.cell)
             if steps is None:
-                found.append({})
+                states.append({})
             elif steps <= usual and usual == gap.count + 1:
-                found.append(self._arrived_from(last.scene, actual, self.states[actual], moment))
+                states.append(self._arrived_from(last.scene, actual, self.states[actual], moment))
             else:
-                found.append(self._again_through(gap, actual, max(usual, steps), moment))
-        self.states = tuple(found)
+                states.append(self._again_through(gap, actual, max(usual, steps), moment))
+        self.states = tuple(states)
         self._gap = None
         self._quiet = 0
         self._cell = moment.cell
@@ -480,13 +480,13 @@ class Tracker:
     def _perceive(self, moment: EvidenceMoment) -> bool:
         """Let the visible agent perceive; return True if its knowledge changed."""
         before = [set(weights) for weights in self.states]
-        found = []
+        states = []
         for actual, weights in enumerate(self.states):
             sums = self._sums(actual, moment.tick, weights)
             masks = [same[actual] for same in (*moment.learnt, moment.alike)]
             learn(weights, conditioned, masks, sums)
-            found.append(self._told_of(actual, sums.total(), moment))
-        self.states = tuple(found)
+            states.append(self._told_of(actual, sums.total(), moment))
+        self.states = tuple(states)
         self._moment, self.tick = moment, max(self.tick, moment.tick)
         self._agree(moment)
         return before != [set(weights) for weights in self.states]
@@ -592,8 +592,8 @@ class Tracker:
 
 
 def _last_until(moments: Sequence[EvidenceMoment], tick: int) -> EvidenceMoment:
-    found = moments[0]
+    latest = moments[0]
     for moment in moments:
         if moment.tick <= tick:
-            found = moment
-    return found
+            latest = moment
+    return latest

@@ -165,7 +165,7 @@ def known_after(moments: Sequence[EvidenceMoment], alternatives: int) -> list[Kn
     section 5).
     """
     everyone = (1 << alternatives) - 1
-    found = []
+    knowledges = []
     for actual in range(alternatives):
         knowledge = (everyone, everyone)
         for moment in moments:
@@ -175,5 +175,5 @@ def known_after(moments: Sequence[EvidenceMoment], alternatives: int) -> list[Kn
                 knowledge = conditioned(knowledge, moment.alike[actual])
             for mask in moment.claims:
                 knowledge = told(knowledge, mask)
-        found.append(knowledge)
-    return found
+        knowledges.append(knowledge)
+    return knowledges

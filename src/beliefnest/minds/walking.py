@@ -118,48 +118,48 @@ class Strategy:
 
     def scene(self, changes: WalkChanges) -> Surroundings:
         """Return all alternatives, with what has changed in a history since it began."""
-        found = self._scenes.get(changes)
-        if found is None:
-            found = self._scenes[changes] = self._changed(changes)
-        return found
+        scene = self._scenes.get(changes)
+        if scene is None:
+            scene = self._scenes[changes] = self._changed(changes)
+        return scene
 
     def sums(self, stage: Stage, cell: Position, knowledge: Knowledge, draw: Draw) -> list[float]:
         """Return the cumulative probabilities of all actions."""
         key = (stage, cell, knowledge, draw.rationality, draw.utility, draw.credence)
-        found = self._sums.get(key)
-        if found is None:
+        cumulated = self._sums.get(key)
+        if cumulated is None:
             policy = self._hypotheses.log_policy(stage, cell, knowledge)
             credence = draw.credence if policy.shape[3] > 1 else 0
             column = policy[:, draw.rationality, draw.utility, credence]
-            found = self._sums[key] = np.cumsum(np.exp(column)).tolist()
-        return found
+            cumulated = self._sums[key] = np.cumsum(np.exp(column)).tolist()
+        return cumulated
 
     def alike(self, scene: Surroundings, pose: AgentPose, actual: int) -> int:
         """Return the alternatives with the same percept from a pose as the actual one."""
         if self._sight.field_of_view >= 360:
             pose = (pose[0], 0.0, 0.0)
         key = (id(scene), pose)
-        found = self._looks.get(key)
-        if found is None:
-            found = self._looks[key] = scene.worlds.alike(*pose, all_round=False)
-        return found[actual]
+        likenesses = self._looks.get(key)
+        if likenesses is None:
+            likenesses = self._looks[key] = scene.worlds.alike(*pose, all_round=False)
+        return likenesses[actual]
 
     def told(self, draw: Draw) -> dict[str, float | str]:
         """Return a hypothesis by the names of its factors."""
         model = self.model
-        told: dict[str, float | str] = {
+        report: dict[str, float | str] = {
             f"utility.{goal}": float(model.utility_rows[draw.utility, n])
             for n, goal in enumerate(model.goals)
         }
         if model.doubt is not None:
             row = model.credence_rows[draw.credence]
-            told |= {
+            report |= {
                 f"credence.{name}": float(row[n]) for n, name in enumerate(model.alternative_names)
             }
-            told["actual"] = model.alternative_names[draw.actual]
+            report["actual"] = model.alternative_names[draw.actual]
         if len(model.rationalities) > 1:
-            told["rationality"] = model.rationalities[draw.rationality]
-        return told
+            report["rationality"] = model.rationalities[draw.rationality]
+        return report
 
     def _changed(self, changes: WalkChanges) -> Surroundings:
         before = self._scene.worlds
@@ -173,8 +173,8 @@ class Strategy:
                 made[id(world.blocks)] = draft.terrain()
             contents = {place: dict(items) for place, items in world.contents.items()}
             for place, item, count in changes.moved:
-                held = contents.setdefault(place, {})
-                held[item] = max(0, held.get(item, 0) + count)
+                content = contents.setdefault(place, {})
+                content[item] = max(0, content.get(item, 0) + count)
             kept = {place: _without_nothing(items) for place, items in contents.items()}
             worlds.append(AlternativeWorld(made[id(world.blocks)], kept, world.agents))
         changed = AlternativeWorlds(

@@ -52,8 +52,8 @@ class Floor:
 
         codes, sizes, places = self._around(cells)
         inside = _inside(cells, self.blocks.shape)
-        found = [bool(stands(codes, sizes, *place)) for place in places.tolist()]
-        mask: Flags = np.array(found, dtype=np.bool_).reshape(-1) & inside
+        are_standable = [bool(stands(codes, sizes, *place)) for place in places.tolist()]
+        mask: Flags = np.array(are_standable, dtype=np.bool_).reshape(-1) & inside
         return mask
 
     def steps(self, cells: Cells, *, diagonal: bool) -> tuple[Cells, Flags]:
@@ -109,9 +109,9 @@ class Floor:
         sides, levels = range(-_ASIDE, _ASIDE + 1), range(-_BELOW, _ABOVE + 1)
         near = np.stack(np.meshgrid(sides, levels, sides, indexing="ij"), -1)
         places = (cells[:, None, None, None] + near).reshape(-1, 3)
-        held = np.clip(places, 0, shape - 1)
-        codes = bodies_in(self._registry, self.blocks.at_indices(held))
-        aside = (held[:, ::2] != places[:, ::2]).any(axis=1)
+        inside_places = np.clip(places, 0, shape - 1)
+        codes = bodies_in(self._registry, self.blocks.at_indices(inside_places))
+        aside = (inside_places[:, ::2] != places[:, ::2]).any(axis=1)
         codes[aside | (places[:, 1] < 0) | (places[:, 1] > shape[1])] = 0
         codes[~aside & (places[:, 1] == shape[1])] = ROOM
         at = np.full((len(cells), 3), (_ASIDE, _BELOW, _ASIDE))
@@ -161,12 +161,12 @@ def ways_from(
             return None
     made = {id(floor): _moves(floor, cells, diagonal=diagonal) for floor in distinct}
     by_floor = {key: np.searchsorted(cells, to) for key, (to, _) in made.items()}
-    found = _reached(list(by_floor.values()), np.searchsorted(cells, first))
+    reached = _reached(list(by_floor.values()), np.searchsorted(cells, first))
     renumbered = np.full(len(cells), -1, dtype=np.int32)
-    renumbered[found] = np.arange(len(found), dtype=np.int32)
-    moves = np.stack([renumbered[by_floor[id(floor)][found]] for floor in floors])
-    doors = np.stack([made[id(floor)][1][found] for floor in floors])
-    kept: list[list[int]] = (_indices(cells[found], box.shape) + np.array(box.low)).tolist()
+    renumbered[reached] = np.arange(len(reached), dtype=np.int32)
+    moves = np.stack([renumbered[by_floor[id(floor)][reached]] for floor in floors])
+    doors = np.stack([made[id(floor)][1][reached] for floor in floors])
+    kept: list[list[int]] = (_indices(cells[reached], box.shape) + np.array(box.low)).tolist()
     return Ways(tuple((x, y, z) for x, y, z in kept), moves, doors)
 
 

@@ -274,11 +274,11 @@ class _Cache(caching.FunctionCache):
         Other processes wait for it and then find the code.
         """
         rtsys.initialize(target_context)
-        found = self._load(sig, target_context)
-        if found is None and self._lock is None:
+        compiled = self._load(sig, target_context)
+        if compiled is None and self._lock is None:
             self._lock = self._locked()
-            found = self._load(sig, target_context)
-        return found
+            compiled = self._load(sig, target_context)
+        return compiled
 
     def save_overload(self, sig: object, data: object) -> None:
         """Store machine code, unless the folder is full or no longer writable."""

@@ -228,8 +228,8 @@ class Geometry(SightLines):
 
     def codes_at(self, cells: npt.NDArray[np.int64]) -> CodeGrid:
         """Return the shape codes of cells with some indices (n, 3), in the box or its margin."""
-        found: CodeGrid = self.codes[tuple(cells.T + 1)]
-        return found
+        codes: CodeGrid = self.codes[tuple(cells.T + 1)]
+        return codes
 
     def with_blocks(self, changes: Mapping[Position, int]) -> "Geometry":
         """Return the geometry with other block states (-1: unknown) at some positions of the grid.
@@ -321,8 +321,8 @@ class ChunkGeometry(SightLines):
         chunks, within = np.divmod(cells.T + 1, SIDE)
         numbers = np.ravel_multi_index(tuple(chunks), chunks_of((x + 2, y + 2, z + 2)))
         places = np.ravel_multi_index(tuple(within), (SIDE, SIDE, SIDE))
-        found: CodeGrid = self.codes[self.rows[numbers], places]
-        return found
+        codes: CodeGrid = self.codes[self.rows[numbers], places]
+        return codes
 
     @functools.cached_property
     def _scene(self) -> "RayScene":

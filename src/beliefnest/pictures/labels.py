@@ -80,17 +80,17 @@ def _arranged(
         number = (
             min(range(len(waiting)), key=lambda n: (len(left[n]) or _MANY, n)) if chooses else 0
         )
-        label, found = waiting.pop(number), left.pop(number)
+        label, positions = waiting.pop(number), left.pop(number)
         wide, high = label.size
         at: XY | None = None
-        if found:
-            at = found[0]
+        if positions:
+            at = positions[0]
             room.take((*at, at[0] + wide, at[1] + high))
         elif not only_beside:
             x0, y0, x1, y1 = label.icon
             spot = room.spot(((x0 + x1) / 2, (y0 + y1) / 2), wide, high)
             at = None if spot is None else (spot[0] - wide / 2, spot[1] - high / 2)
-        put.append(PlacedLabel(label, at, beside=bool(found)))
+        put.append(PlacedLabel(label, at, beside=bool(positions)))
         if at is not None:
             new = (*at, at[0] + wide, at[1] + high)
             left = [

@@ -56,7 +56,7 @@ _KINDS = ("heat", "sight", "remembered", "told", "false", "unknown blocks", "con
 
 
 def _order(kind: str) -> tuple[int, str]:
-    first = next((n for n, known in enumerate(_KINDS) if kind.startswith(known)), len(_KINDS))
+    first = next((n for n, prefix in enumerate(_KINDS) if kind.startswith(prefix)), len(_KINDS))
     return first, kind
 
 

@@ -199,13 +199,13 @@ _LENGTHS = ("x", "y", "width", "height", "thick", "radius", "dash", "size")
 
 
 def _scaled(mark: DrawnMark, factor: float) -> DrawnMark:
-    given: dict[str, Any] = {
+    changed: dict[str, Any] = {
         name: getattr(mark, name) * factor for name in mark.__dataclass_fields__ if name in _LENGTHS
     }
     if isinstance(mark, Polygon):
-        given["points"] = tuple((x * factor, y * factor) for x, y in mark.points)
+        changed["points"] = tuple((x * factor, y * factor) for x, y in mark.points)
     elif isinstance(mark, Lines):
-        given["segments"] = tuple(
+        changed["segments"] = tuple(
             ((a * factor, b * factor), (c * factor, d * factor)) for (a, b), (c, d) in mark.segments
         )
-    return replace(mark, **given)
+    return replace(mark, **changed)

@@ -162,12 +162,12 @@ def _levels(columns: Sequence[Sequence[Card]]) -> list[tuple[Card | None, ...]]:
 
 def _named(cards: Sequence[Card]) -> dict[tuple[object, ...], Card]:
     """Return cards by subject; a number tells cards about the same subject apart."""
-    found: dict[tuple[object, ...], Card] = {}
+    cards_by_name: dict[tuple[object, ...], Card] = {}
     for card in cards:
         key = (card.prediction, card.title, card.path)
-        again = sum(name[:3] == key for name in found)
-        found[(*key, again)] = card
-    return found
+        again = sum(name[:3] == key for name in cards_by_name)
+        cards_by_name[(*key, again)] = card
+    return cards_by_name
 
 
 def _beside(page: _Page, condition: ConditionPicture, at: XY, inner: float) -> float:
@@ -257,6 +257,6 @@ def _store(block: PanelBlock, store: Store, left: float, width: float) -> None:
     block.kinds |= {"container", "told"} if store.teller else {"container"}
     top, inset = block.bottom, icon * 1.5
     block.bottom += (icon - TEXT_SIZE) / 2
-    told = f" (told by {store.teller})" if store.teller else ""
-    _note(block, Note(f"{store.label}: {store.words}{told}", false), left + inset, width - inset)
+    teller = f" (told by {store.teller})" if store.teller else ""
+    _note(block, Note(f"{store.label}: {store.words}{teller}", false), left + inset, width - inset)
     block.bottom = max(block.bottom, top + icon + 1.6)

@@ -164,8 +164,8 @@ def shades(names: Sequence[str]) -> dict[str, str]:
 def _named_colour(name: str) -> str | None:
     """Return the colour that a name mentions; None if it mentions none, or several."""
     words = " ".join(re.findall("[a-z]+", name.lower()))
-    found = {_NAMED[word] for word in _COLOUR_WORD.findall(words)}
-    return found.pop() if len(found) == 1 else None
+    colours = {_NAMED[word] for word in _COLOUR_WORD.findall(words)}
+    return colours.pop() if len(colours) == 1 else None
 
 
 def mix(first: str, second: str, share: float) -> str:

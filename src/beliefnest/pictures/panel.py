@@ -155,9 +155,9 @@ def _store_line(
     block.kinds |= {"container", "told"} if store.teller else {"container"}
     inner = left + icon * 1.55
     text = f"{store.label}: {store.words}"
-    told = told_text(store.source, store.teller, store.age)
-    if told:
-        text += f" ({told})"
+    source_words = told_text(store.source, store.teller, store.age)
+    if source_words:
+        text += f" ({source_words})"
     top = block.bottom
     paragraph(block, text, inner, width - icon * 1.55, size)
     if store.mark is Mark.FALSE:
@@ -174,11 +174,11 @@ def _device_line(
     icon = size * 1.15
     block.marks += icons.device((left, block.bottom), icon, shown)
     inner, top = left + icon * 1.55, block.bottom
-    held, instead = shown.false
-    known = told_text(shown.source, shown.teller, shown.age)
-    told = f" ({known})" if known else ""
+    believed, instead = shown.false
+    source_words = told_text(shown.source, shown.teller, shown.age)
+    note = f" ({source_words})" if source_words else ""
     where = f"({', '.join(map(str, shown.position))})"
-    paragraph(block, f"{where}: {held}{told}", inner, width - icon * 1.55, size)
+    paragraph(block, f"{where}: {believed}{note}", inner, width - icon * 1.55, size)
     _false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)
     block.bottom = max(block.bottom, top + icon + 2.2) + 0.8
 
@@ -204,8 +204,8 @@ def _person_line(
     at = (left + radius, block.bottom + radius)
     block.marks += icons.agent(at, radius, look, None, Mark.STALE)
     inner, top = left + size * 1.78, block.bottom
-    held, instead = wrong
-    paragraph(block, f"{look.name}: {held}", inner, width - size * 1.78, size)
+    believed, instead = wrong
+    paragraph(block, f"{look.name}: {believed}", inner, width - size * 1.78, size)
     _false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)
     block.bottom = max(block.bottom, top + 2 * radius) + 0.8
 

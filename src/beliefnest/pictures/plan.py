@@ -246,10 +246,10 @@ class _Sheet:
         other = [parts(_NOWHERE), parts(_GROUND)]
         # The last two values are those for `NOWHERE` and `UNKNOWN`, as negative numbers.
         colours = np.array([*grounds, *other], dtype=np.float64)[relief.blocks]
-        known = relief.blocks >= 0
+        is_known = relief.blocks >= 0
         rise = np.diff(relief.levels, axis=1, prepend=relief.levels[:, :1])
         light = 1 + _STEEP * np.clip(rise, -_SLOPES, _SLOPES)
-        colours[known] *= light[known][:, None]
+        colours[is_known] *= light[is_known][:, None]
         for sight in self._scene.sights[:1]:
             tint = np.array(parts(self._looks[sight.name].colour))
             colours[sight.seen] = 0.6 * colours[sight.seen] + 0.4 * tint
@@ -276,8 +276,8 @@ class _Sheet:
             x, y = (x0 + x1) / 2, (y0 + y1) / 2
             ends = ((x, y0), (x, y1)) if down > 1 else ((x0, y), (x1, y))
             segments.setdefault(fills[i, k], []).append(ends)
-        for colour, found in segments.items():
-            self.marks.append(Lines(tuple(found), colour, max(self._cell, _THINNEST)))
+        for colour, lines in segments.items():
+            self.marks.append(Lines(tuple(lines), colour, max(self._cell, _THINNEST)))
 
     def sights(self) -> None:
         """Draw a tint over the blocks that the first agent sees, hatching for other agents."""

@@ -182,11 +182,11 @@ def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:
     entries = [*chart.fills, *([""] if chart.unknown else [])]
     wide, high = 13.0, TEXT_SIZE * 1.15
     for words in [*entries, *(["false"] if chart.false else [])]:
-        told = words or MARKS[Mark.UNKNOWN].words
+        label = words or MARKS[Mark.UNKNOWN].words
         false = words == "false" and words not in chart.fills
-        told = "false: reality is otherwise" if false else told
-        told = " ".join(wrap(ellipsis(told, TEXT_SIZE, width - wide - 3), TEXT_SIZE, width))
-        taken = wide + 3 + text_width(told, TEXT_SIZE)
+        label = "false: reality is otherwise" if false else label
+        label = " ".join(wrap(ellipsis(label, TEXT_SIZE, width - wide - 3), TEXT_SIZE, width))
+        taken = wide + 3 + text_width(label, TEXT_SIZE)
         if x > at[0] and x + taken > at[0] + width:
             x, top = at[0], top + high * 1.5
         if false:
@@ -196,15 +196,15 @@ def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:
         else:
             marks += _swatch(chart, words, (x, top), wide, high)
         base = top + high / 2 + TEXT_SIZE * ASCENT * 0.48
-        marks.append(Text(x + wide + 3, base, told, TEXT_SIZE, QUIET))
+        marks.append(Text(x + wide + 3, base, label, TEXT_SIZE, QUIET))
         x += taken + TEXT_SIZE * 1.5
     for believed in sorted(chart.told, reverse=True):
-        told = "told, and believed" if believed else "told, and not believed"
-        taken = wide + 3 + text_width(told, TEXT_SIZE)
+        label = "told, and believed" if believed else "told, and not believed"
+        taken = wide + 3 + text_width(label, TEXT_SIZE)
         if x > at[0] and x + taken > at[0] + width:
             x, top = at[0], top + high * 1.5
         marks += icons.hearsay((x + wide / 2, top + high * 0.42), high * 0.4, believed=believed)
         base = top + high / 2 + TEXT_SIZE * ASCENT * 0.48
-        marks.append(Text(x + wide + 3, base, told, TEXT_SIZE, QUIET))
+        marks.append(Text(x + wide + 3, base, label, TEXT_SIZE, QUIET))
         x += taken + TEXT_SIZE * 1.5
     return top + high

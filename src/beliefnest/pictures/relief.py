@@ -87,9 +87,9 @@ def read_relief(
         cut = (slice(start, min(start + step, last)), slice(0, top), slice(near, far))
         grid = terrain.cut((cut[0].start, 0, near), (cut[0].stop, top, far))
         columns.append(_columns(grid, is_air, {name: mask[cut] for name, mask in sights.items()}))
-    found, layers, empty = (np.concatenate([each[n] for each in columns]) for n in range(3))
-    numbers, which = np.unique(found, return_inverse=True)
-    blocks = np.where(empty < 0, empty, which.reshape(found.shape)).astype(np.int32)
+    tops, layers, empty = (np.concatenate([each[n] for each in columns]) for n in range(3))
+    numbers, which = np.unique(tops, return_inverse=True)
+    blocks = np.where(empty < 0, empty, which.reshape(tops.shape)).astype(np.int32)
     seen = {name: np.concatenate([each[3][name] for each in columns]) for name in sights}
     names = tuple("air" if n < 0 else registry.text(n) for n in numbers.tolist())
     return Relief(names, blocks, (layers + box.low[1]).astype(np.int32)), seen
@@ -136,7 +136,7 @@ def _columns(
     """
     solid = ~is_air[grid]
     layers = grid.shape[1] - 1 - np.argmax(solid[:, ::-1], axis=1)
-    found = np.take_along_axis(grid, layers[:, None], axis=1)[:, 0]
+    tops = np.take_along_axis(grid, layers[:, None], axis=1)[:, 0]
     has = solid.any(axis=1)
     empty = np.where(has, 0, np.where((grid < 0).any(axis=1), UNKNOWN, NOWHERE))
     seen = {
@@ -145,4 +145,4 @@ def _columns(
         )
         for name, mask in sights.items()
     }
-    return found, layers, empty.astype(np.int32), seen
+    return tops, layers, empty.astype(np.int32), seen

@@ -204,8 +204,8 @@ def _colour(kinds: Sequence[str], kind: str) -> str:
 
 def _axis(values: Iterable[float]) -> tuple[float, ...]:
     """Return ticks at round numbers that enclose all values."""
-    found = list(values)
-    low, high = min(found), max(found)
+    numbers = list(values)
+    low, high = min(numbers), max(numbers)
     # Equal values still need an axis of some length.
     least = (high - low or abs(high) or 1.0) / _TICKS
     power = 10.0 ** math.floor(math.log10(least))

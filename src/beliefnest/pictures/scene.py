@@ -248,17 +248,17 @@ def best_height(states: Iterable[State]) -> int:
 
     In a wide world with things at many heights it is the highest y: its plan hides nothing.
     """
-    found = list(states)
-    heights = [place[1] for state in found for place in state.containers] or [
+    all_states = list(states)
+    heights = [place[1] for state in all_states for place in state.containers] or [
         math.floor(agent.position[1] + 1e-6)
-        for state in found
+        for state in all_states
         for agent in state.agents.values()
         if agent.position is not None
     ]
     if not heights:
-        return found[0].box.low[1] + 1
-    if is_wide(found[0].box) and max(heights) - min(heights) > _FLAT:
-        return found[0].box.high[1]
+        return all_states[0].box.low[1] + 1
+    if is_wide(all_states[0].box) and max(heights) - min(heights) > _FLAT:
+        return all_states[0].box.high[1]
     counts = Counter(heights)
     return min(counts, key=lambda height: (-counts[height], height))
 
@@ -429,31 +429,31 @@ def read_stores(
         labels: Names that people use for containers.
         wrong: Differences from the other simulator, by position.
     """
-    found = []
-    for place, held in sorted(state.containers.items()):
+    stores = []
+    for place, content in sorted(state.containers.items()):
         text = state.blocks[place]
         false = wrong.get(place)
-        found.append(
+        stores.append(
             Store(
                 position=place,
                 name=None if text is None else text.partition("[")[0],
                 label=on_one_line(labels.get(place, f"({', '.join(map(str, place))})")),
-                items=held.items,
-                complete=held.complete,
-                mark=_store_mark(held, false=false is not None),
-                age=0 if held.current else state.tick - held.basis.observed_at,
+                items=content.items,
+                complete=content.complete,
+                mark=_store_mark(content, false=false is not None),
+                age=0 if content.current else state.tick - content.basis.observed_at,
                 instead="" if false is None else false.instead,
                 above=place[1] - level,
-                teller=_teller(held.basis) if held.items or held.complete else "",
-                source=_source(held),
+                teller=_teller(content.basis) if content.items or content.complete else "",
+                source=_source(content),
             )
         )
-    return tuple(found)
+    return tuple(stores)
 
 
-def _source(held: ContainerBelief) -> Source | None:
+def _source(store: ContainerBelief) -> Source | None:
     """Return the source of known contents that are not perceived now; None: there is none."""
-    return held.basis.source if not held.current and (held.items or held.complete) else None
+    return store.basis.source if not store.current and (store.items or store.complete) else None
 
 
 def _teller(basis: Basis | None) -> str:
@@ -463,12 +463,12 @@ def _teller(basis: Basis | None) -> str:
     return basis.speaker or "a sign"
 
 
-def _store_mark(held: ContainerBelief, *, false: bool) -> Mark:
+def _store_mark(content: ContainerBelief, *, false: bool) -> Mark:
     if false:
         return Mark.FALSE
-    if held.complete:
-        return Mark.CURRENT if held.current else Mark.STALE
-    return Mark.INCOMPLETE if held.items else Mark.UNKNOWN
+    if content.complete:
+        return Mark.CURRENT if content.current else Mark.STALE
+    return Mark.INCOMPLETE if content.items else Mark.UNKNOWN
 
 
 def _person(
@@ -502,10 +502,10 @@ _ON = ("open", "powered", "lit")
 
 
 def _devices(
-    standing: Mapping[Position, str | None], known: State, wrong: Mapping[Position | str, Wrong]
+    standing: Mapping[Position, str | None], belief: State, wrong: Mapping[Position | str, Wrong]
 ) -> tuple[Device, ...]:
     registry = Registry.load()
-    found = []
+    devices = []
     for place, text in standing.items():
         if text is None or not _is_device(text):
             continue
@@ -515,10 +515,10 @@ def _devices(
         # The first property of _ON decides: a door also has `powered`, but may be shut then.
         states = [properties[key] == "true" for key in _ON if key in properties]
         parts = tuple((b[0], b[2], b[3], b[5]) for b in registry.boxes(state))
-        says = sign_words(known.signs.get(place, ""))
+        says = sign_words(belief.signs.get(place, ""))
         false = wrong.get(place)
-        told = None if known.blocks.current(place) else known.blocks.basis(place)
-        found.append(
+        basis = None if belief.blocks.current(place) else belief.blocks.basis(place)
+        devices.append(
             Device(
                 place,
                 name,
@@ -526,12 +526,12 @@ def _devices(
                 parts,
                 says,
                 None if false is None else told_apart((false.held, false.instead)),
-                _teller(told),
-                0 if told is None else known.tick - told.observed_at,
-                None if told is None else told.source,
+                _teller(basis),
+                0 if basis is None else belief.tick - basis.observed_at,
+                None if basis is None else basis.source,
             )
         )
-    return tuple(found)
+    return tuple(devices)
 
 
 @cache

@@ -69,8 +69,8 @@ def _perceived(scene: Scene) -> Scene:
 
 
 def _is_remembered(thing: Store | Device) -> bool:
-    given = thing.source in (Source.PRIOR, Source.EDITED)
-    return bool(thing.age or thing.teller or given)
+    is_assumed = thing.source in (Source.PRIOR, Source.EDITED)
+    return bool(thing.age or thing.teller or is_assumed)
 
 
 def _shut(store: Store) -> Store:

@@ -54,8 +54,8 @@ def svg_text(drawing: Drawing, *, inline: bool = False) -> str:
 def _add(root: ElementTree.Element, mark: DrawnMark) -> None:
     match mark:
         case Rectangle():
-            given = {"x": mark.x, "y": mark.y, "width": mark.width, "height": mark.height}
-            shape = _shape(root, "rect", given, mark)
+            sides = {"x": mark.x, "y": mark.y, "width": mark.width, "height": mark.height}
+            shape = _shape(root, "rect", sides, mark)
             if mark.radius:
                 shape.set("rx", _n(mark.radius))
         case Circle():
@@ -86,9 +86,9 @@ def _pixels(root: ElementTree.Element, mark: Pixels) -> None:
 
 
 def _shape(
-    root: ElementTree.Element, tag: str, given: dict[str, float], mark: Rectangle | Circle | Polygon
+    root: ElementTree.Element, tag: str, sizes: dict[str, float], mark: Rectangle | Circle | Polygon
 ) -> ElementTree.Element:
-    shape = ElementTree.SubElement(root, tag, {key: _n(value) for key, value in given.items()})
+    shape = ElementTree.SubElement(root, tag, {key: _n(value) for key, value in sizes.items()})
     shape.set("fill", mark.fill or "none")
     if mark.stroke is not None:
         shape.set("stroke", mark.stroke)

@@ -130,8 +130,8 @@ def run_cells(
 
 
 def _is_open(folder: CellFolder, cell: Keyed) -> bool:
-    known = folder.cell(cell.key.name)
-    return known is None or known["error"] is not None
+    record = folder.cell(cell.key.name)
+    return record is None or record["error"] is not None
 
 
 class _Counting:

@@ -74,15 +74,15 @@ class Worker:
         """Play a cell, and note its time and its warnings, which are not shown here."""
         started = time.perf_counter()
         # A process has only standard error for its warnings; the study gives them, each once.
-        with warnings.catch_warnings(record=True) as found:
+        with warnings.catch_warnings(record=True) as seen:
             warnings.simplefilter("always", ScenarioWarning)
             content, unavailable = self.content(cell, terms)
-        told = [each for each in found if isinstance(each.message, ScenarioWarning)]
-        for each in found:
-            if each not in told:
+        own = [each for each in seen if isinstance(each.message, ScenarioWarning)]
+        for each in seen:
+            if each not in own:
                 warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
         seconds = time.perf_counter() - started
-        ours = tuple(each.message for each in told if isinstance(each.message, ScenarioWarning))
+        ours = tuple(each.message for each in own if isinstance(each.message, ScenarioWarning))
         return CellResult(cell.key.name, content, seconds, unavailable, ours)
 
     def content(self, cell: Keyed, terms: Terms) -> tuple[dict[str, Any], str]:

@@ -80,22 +80,22 @@ class StepMeter(threading.local):
         """Count what is printed."""
         self.spend(sum(_size(value)))
 
-    def call(self, name: str, first: object, given: list[Any]) -> None:
+    def call(self, name: str, first: object, arguments: list[Any]) -> None:
         """Count a call of a function, method, filter or operator on a value with arguments."""
-        sizes = [_size(each) for each in (first, *given)]
+        sizes = [_size(each) for each in (first, *arguments)]
         self.spend(_CALL + sum(map(_steps, sizes)))
         own, *others = map(sum, sizes)
         factor = 1 + sum(others)
         widths = 0
-        if name == "sum" and any(isinstance(each, list | tuple) for each in given):
+        if name == "sum" and any(isinstance(each, list | tuple) for each in arguments):
             self.spend(own * own // _SQUARES)
         if name == "wordwrap" and isinstance(first, str):
             self.spend(sum(len(word) ** 2 for word in _SPACES.split(first)) // _SQUARES)
         if name in _TIMES:
-            factor += _numbers(given)
+            factor += _numbers(arguments)
         if name in _FORMATS and isinstance(first, str):
             own, widths = 1 + first.count("%"), len(first) + _widths(first)
-            factor += _numbers(given) if _GIVEN_WIDTHS.search(first) else 0
+            factor += _numbers(arguments) if _GIVEN_WIDTHS.search(first) else 0
         if own * factor + widths > _LARGEST_PRODUCT:
             raise _too_large(_LARGEST_PRODUCT)
 
@@ -122,12 +122,12 @@ class StepMeter(threading.local):
         def counted(context: Context, value: Any, /, *args: Any, **options: Any) -> Any:
             if name == "join" and isinstance(value, Iterator):
                 value = tuple(value)
-            given = [*args, *options.values()]
+            arguments = [*args, *options.values()]
             if name in _WIDE:
-                check_numbers(given)
+                check_numbers(arguments)
             if name not in FILTERS:
                 self.spend(_FILTER)
-            self.call(name, value, given)
+            self.call(name, value, arguments)
             return self.value(
                 environment.call_filter(name, value, args, options, context, context.eval_ctx)
             )
@@ -145,9 +145,9 @@ class StepMeter(threading.local):
         return counted
 
 
-def check_numbers(given: Iterable[object]) -> None:
+def check_numbers(values: Iterable[object]) -> None:
     """Raise SecurityError if a number, which may be a width, is too large."""
-    for each in given:
+    for each in values:
         _check_growth("*", "x", each)
 
 
@@ -181,8 +181,8 @@ def _widths(text: str) -> int:
     return sum(int(n) for each in _WIDTHS.findall(text) for n in each.split(".") if n)
 
 
-def _numbers(given: Iterable[object]) -> int:
-    return sum(abs(each) for each in given if isinstance(each, int))
+def _numbers(values: Iterable[object]) -> int:
+    return sum(abs(each) for each in values if isinstance(each, int))
 
 
 def _steps(size: tuple[int, int]) -> int:

@@ -183,8 +183,8 @@ def blocks(branch: BranchView, names: Iterable[str] | None = None) -> str:
     Without names, all known blocks except air. `Not observed` for a name without known blocks.
     """
     lines = [
-        f"{name}: {', '.join(map(text.position, found)) or text.NOT_OBSERVED}"
-        for name, found in _known_blocks(branch.state, names).items()
+        f"{name}: {', '.join(map(text.position, places)) or text.NOT_OBSERVED}"
+        for name, places in _known_blocks(branch.state, names).items()
     ]
     return "\n".join(lines) or text.NOT_OBSERVED
 
@@ -202,8 +202,8 @@ def blocks_and_visibilities(
     viewers = {} if state.owner is None else {"Me": state}
     viewers |= {name: belief_of(branch, name) for name in _strings(others)}
     parts = []
-    for name, found in _known_blocks(state, names).items():
-        seen = {text.position(at): _visibility(viewers, at) for at in found}
+    for name, places in _known_blocks(state, names).items():
+        seen = {text.position(at): _visibility(viewers, at) for at in places}
         parts.append(
             f"{name} visibilities:{text.as_json(seen)}"
             if seen
@@ -228,8 +228,8 @@ def block_property(branch: BranchView, name: str) -> str:
 
     `Not observed` if no such block is known.
     """
-    found = blocks_named(branch.state, [name])
-    lines = [f"{text.position(at)}: {text.mapping(parse_state(block)[1])}" for at, block in found]
+    pairs = blocks_named(branch.state, [name])
+    lines = [f"{text.position(at)}: {text.mapping(parse_state(block)[1])}" for at, block in pairs]
     return "\n".join(lines) or text.NOT_OBSERVED
 
 

@@ -91,7 +91,7 @@ class ExampleBlocks:
 def example_mind(
     state: FixedState,
     children: Mapping[str, MindView] = MappingProxyType({}),
-    told: ToldMind | None = None,
+    mind: ToldMind | None = None,
 ) -> MindView:
     """Return a simulator that consists of its state, the nested beliefs, and what is observed."""
 
@@ -100,7 +100,7 @@ def example_mind(
             raise PathError(f"the example has no belief of {agent!r}")
         return children[agent]
 
-    return MindView(state, lambda: told or ToldMind((), {}, {}, {}), below)
+    return MindView(state, lambda: mind or ToldMind((), {}, {}, {}), below)
 
 
 def example_branch() -> MindView:

@@ -63,8 +63,8 @@ def _agent(state: State, agent: AgentBelief) -> str:
     if agent.position is not None and agent.basis is not None:
         came = memory(state, agent.basis, current=agent.current)
         parts = [f"at {text.point(agent.position)}; {came}"]
-    held = (agent.equipment or {}).get("main_hand")
-    parts += [] if held is None else [f"{held} in its hand"]
+    in_hand = (agent.equipment or {}).get("main_hand")
+    parts += [] if in_hand is None else [f"{in_hand} in its hand"]
     parts += [f"known to have {text.mapping(agent.inventory)}"] if agent.inventory else []
     return "; ".join(parts)
 

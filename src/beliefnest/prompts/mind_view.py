@@ -42,10 +42,10 @@ class MindView:
     __slots__ = ("_below", "_told", "_told_once", "state")
 
     def __init__(
-        self, state: State, told: Callable[[], ToldMind], below: Callable[[str], "MindView"]
+        self, state: State, read_mind: Callable[[], ToldMind], below: Callable[[str], "MindView"]
     ) -> None:
         self.state = state
-        self._told, self._below = told, below
+        self._told, self._below = read_mind, below
         self._told_once: ToldMind | None = None
 
     def __repr__(self) -> str:

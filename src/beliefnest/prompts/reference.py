@@ -51,7 +51,7 @@ def filter_reference() -> str:
     """Return the text of docs/filters.md."""
     branch = example_branch()
     sections = [_section(each, branch) for each in BUILT_IN.filters.values()]
-    rows = [f"| `{name}` | {told} |" for name, told in BUILT_IN_TEMPLATES.items()]
+    rows = [f"| `{name}` | {description} |" for name, description in BUILT_IN_TEMPLATES.items()]
     table = "\n".join(["| template | text |", "|---|---|", *rows])
     head = (files("beliefnest.prompts") / "texts" / "filters.md").read_text(encoding="utf-8")
     return "\n".join([head.replace("@TEMPLATES@", table), *sections])

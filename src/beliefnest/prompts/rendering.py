@@ -70,7 +70,7 @@ def render(
 
 
 @functools.lru_cache(maxsize=_MOST_TEMPLATES)
-def check_variables(template: Template, given: tuple[str, ...]) -> None:
+def check_variables(template: Template, names_with_values: tuple[str, ...]) -> None:
     """Refuse a variable of a template that has no value, without rendering it.
 
     A variable that the template sets, or tests for being defined, may be missing. Variables are not
@@ -78,7 +78,7 @@ def check_variables(template: Template, given: tuple[str, ...]) -> None:
 
     Args:
         template: The template.
-        given: Names of variables, apart from those that `render` always sets.
+        names_with_values: Names of variables, apart from those that `render` always sets.
 
     Raises:
         TemplateError: The template cannot be parsed, or a variable has no value.
@@ -91,15 +91,15 @@ def check_variables(template: Template, given: tuple[str, ...]) -> None:
         return
     except jinja2.TemplateSyntaxError as error:
         raise TemplateError(f"{template.name}, line {error.lineno}: {error.message}") from None
-    known = {*given, "branch", "last_code", "last_error"}
+    defined = {*names_with_values, "branch", "last_code", "last_error"}
     names = list(tree.find_all(nodes.Name))
     set_inside = {name.name for name in names if name.ctx != "load"}
     tests = [each for each in tree.find_all((nodes.Test, nodes.Filter)) if each.name in _OPTIONAL]
     optional = {each.node.name for each in tests if isinstance(each.node, nodes.Name)}
-    missing -= {*known, *set_inside, *optional, *environment.globals}
+    missing -= {*defined, *set_inside, *optional, *environment.globals}
     for name in names:
         if name.name in missing:
-            _refuse(template.name, name.lineno, "variable", name.name, known)
+            _refuse(template.name, name.lineno, "variable", name.name, defined)
 
 
 @functools.cache
@@ -157,9 +157,9 @@ class Renderer:
             return compiled.template.render(values)
         except Exception as error:
             line = _line_of(error, compiled.filename)
-            known = {*values, *self._environment.globals}
+            defined = {*values, *self._environment.globals}
             said = _words(error)
-            hint = _unknown_variable(compiled.tree, line, known, said)
+            hint = _unknown_variable(compiled.tree, line, defined, said)
             raise TemplateError(f"{compiled.name}, line {line}: {said}{hint}") from error
 
     @functools.cached_property
@@ -167,13 +167,13 @@ class Renderer:
         return _ReadingEnvironment(_default_filters() if self._filters is None else self._filters)
 
     def _ready(self, source: Template) -> _Compiled:
-        known = self._compiled.get(source)
-        if known is None:
-            known = _compiled(self._environment, source)
+        compiled = self._compiled.get(source)
+        if compiled is None:
+            compiled = _compiled(self._environment, source)
             if len(self._compiled) >= _MOST_TEMPLATES:
                 del self._compiled[next(iter(self._compiled))]
-            self._compiled[source] = known
-        return known
+            self._compiled[source] = compiled
+        return compiled
 
 
 def _compiled(environment: jinja2.Environment, source: Template) -> _Compiled:
@@ -220,10 +220,10 @@ class _Missing(jinja2.StrictUndefined):
 
     @property
     def _undefined_message(self) -> str:
-        held = self._undefined_obj
-        if held is missing or self._undefined_hint or isinstance(held, _PLAIN_TYPES):
+        owner = self._undefined_obj
+        if owner is missing or self._undefined_hint or isinstance(owner, _PLAIN_TYPES):
             return super()._undefined_message
-        return f"{shortened(repr(held))} has no {quoted(self._undefined_name)}"
+        return f"{shortened(repr(owner))} has no {quoted(self._undefined_name)}"
 
 
 class _ReadingEnvironment(ImmutableSandboxedEnvironment):
@@ -266,11 +266,11 @@ class _ReadingEnvironment(ImmutableSandboxedEnvironment):
     def call(self, context: Context, obj: Any, /, *args: Any, **options: Any) -> Any:
         """Call a function with numbers of limited size, which may be widths."""
         args = tuple(tuple(each) if isinstance(each, Iterator) else each for each in args)
-        given = [*args, *options.values()]
-        check_numbers(given)
+        arguments = [*args, *options.values()]
+        check_numbers(arguments)
         bound_to = getattr(obj, "__self__", None)
         receiver = None if isinstance(bound_to, dict) else bound_to  # its methods do not walk it
-        self.meter.call(getattr(obj, "__name__", ""), receiver, given)
+        self.meter.call(getattr(obj, "__name__", ""), receiver, arguments)
         return self.meter.value(super().call(context, obj, *args, **options))
 
     def is_safe_callable(self, obj: object) -> bool:
@@ -280,7 +280,7 @@ class _ReadingEnvironment(ImmutableSandboxedEnvironment):
         bound_to = getattr(obj, "__self__", None)
         return (
             isinstance(obj, Macro)
-            or any(obj is known for known in self.globals.values())
+            or any(obj is function for function in self.globals.values())
             or (bound_to is not None and isinstance(bound_to, _PLAIN_TYPES))
         )
 
@@ -308,17 +308,17 @@ def _parse(environment: jinja2.Environment, name: str, text: str) -> nodes.Templ
         raise TemplateError(f"{name} is nested too deeply") from None
     for used in tree.find_all(nodes.Filter):
         if used.name not in environment.filters:
-            known = filter(str.isidentifier, environment.filters)
-            _refuse(name, used.lineno, "filter", used.name, known)
+            filters = filter(str.isidentifier, environment.filters)
+            _refuse(name, used.lineno, "filter", used.name, filters)
     for test in tree.find_all(nodes.Test):
         if test.name not in environment.tests:
             _refuse(name, test.lineno, "test", test.name, environment.tests)
     return tree
 
 
-def _refuse(template: str, line: int, kind: str, name: str, known: Iterable[str]) -> NoReturn:
+def _refuse(template: str, line: int, kind: str, name: str, names: Iterable[str]) -> NoReturn:
     raise TemplateError(
-        f"{template}, line {line}: there is no {kind} {quoted(name)}{nearest(name, known)}"
+        f"{template}, line {line}: there is no {kind} {quoted(name)}{nearest(name, names)}"
     )
 
 
@@ -333,11 +333,11 @@ def _line_of(error: BaseException, filename: str) -> int:
     return line
 
 
-def _unknown_variable(tree: nodes.Template, line: int, known: set[str], said: str) -> str:
+def _unknown_variable(tree: nodes.Template, line: int, defined: set[str], said: str) -> str:
     """Return the end of a message about an unknown variable of a line: names similar to it."""
-    missing = meta.find_undeclared_variables(tree) - known
+    missing = meta.find_undeclared_variables(tree) - defined
     here = {name.name for name in tree.find_all(nodes.Name) if name.lineno == line} & missing
-    variables = sorted(known - set(jinja2.defaults.DEFAULT_NAMESPACE))
+    variables = sorted(defined - set(jinja2.defaults.DEFAULT_NAMESPACE))
     # Jinja tells of the first, and only in words.
     first = next((name for name in sorted(here) if repr(name) in said), None)
     return "" if first is None else nearest(first, variables)
@@ -346,8 +346,8 @@ def _unknown_variable(tree: nodes.Template, line: int, known: set[str], said: st
 def _words(error: Exception) -> str:
     """Return an error's message; add the type unless the message is written for users."""
     if isinstance(error, jinja2.TemplateNotFound):
-        known = ", ".join(BUILT_IN_TEMPLATES)
-        return f"no template {quoted(error.name)} to include; there are only the built-in {known}"
+        names = ", ".join(BUILT_IN_TEMPLATES)
+        return f"no template {quoted(error.name)} to include; there are only the built-in {names}"
     if isinstance(error, jinja2.TemplateError):
         return error.message or type(error).__name__
     if isinstance(error, BeliefNestError):

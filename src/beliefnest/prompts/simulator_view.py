@@ -55,8 +55,8 @@ def blocks_where(state: State, accepts: Callable[[str], bool]) -> Iterator[tuple
         InputError: They are too many for a text.
     """
     text_of = Registry.load().text
-    known = [number for number in state.blocks.terrain.states if number >= 0]
-    return _listed(state, [number for number in known if accepts(text_of(number))])
+    numbers = [number for number in state.blocks.terrain.states if number >= 0]
+    return _listed(state, [number for number in numbers if accepts(text_of(number))])
 
 
 def blocks_named(state: State, names: Iterable[str]) -> Iterator[tuple[Position, str]]:

@@ -86,10 +86,10 @@ def _teller_of(branch: BranchView) -> "_Teller":
     return _Teller(branch, narrated=False, coordinates=False)
 
 
-def _scene(told: Sequence[Observation]) -> Iterator[Observation]:
+def _scene(observations: Sequence[Observation]) -> Iterator[Observation]:
     """Yield the observations before the first event and the first later change of sight."""
-    first = told[0].tick if told else 0
-    for each in told:
+    first = observations[0].tick if observations else 0
+    for each in observations:
         if isinstance(each, Happened) or (isinstance(each, SightChange) and each.tick > first):
             return
         yield each
@@ -129,9 +129,11 @@ def _sight_rows(sight: SightChange, owner: str | None) -> Iterator[str]:
         where = ", ".join(map(text.position, places))
         if owner is None and (agents or places):
             names = f"agents:{', '.join(agents)}" if agents else ""
-            told = " & ".join(part for part in (names, f"blocks:{where}" if where else "") if part)
+            sights = " & ".join(
+                part for part in (names, f"blocks:{where}" if where else "") if part
+            )
             word = "sees" if how == "visible" else "seesNoLonger"
-            yield f"{sight.tick};{word};{sight.viewer};{told}"
+            yield f"{sight.tick};{word};{sight.viewer};{sights}"
             continue
         for name, point in agents.items():
             yield f"{sight.tick};{how};{name};position:{text.point(point)}"
@@ -162,38 +164,38 @@ class _Teller:
         self._it: tuple[str | None, Position | None] = (None, None)
         self._in_sight: dict[str, set[Position]] = {}
 
-    def scene(self, told: Iterable[Observation]) -> Iterator[str]:
+    def scene(self, observations: Iterable[Observation]) -> Iterator[str]:
         """Yield sentences about the beginning."""
-        all_ = list(told)
+        all_ = list(observations)
         sights = [each for each in all_ if isinstance(each, SightChange)]
-        found = [each for each in all_ if isinstance(each, Found)]
+        contents = [each for each in all_ if isinstance(each, Found)]
         if self._owner is not None:
             yield from self._first_sights(sights)
         for each in all_:
             if not isinstance(each, SightChange | Found):
                 yield from self._one(each)
-        yield from self._contents(found)
+        yield from self._contents(contents)
         yield from self._looks()
         if self._owner is None:
             yield from self._first_sights(sights)
 
-    def course(self, told: Sequence[Observation], before: Iterable[Observation]) -> Iterator[str]:
+    def course(self, notes: Sequence[Observation], before: Iterable[Observation]) -> Iterator[str]:
         """Yield sentences about what happened, see `dated_course`."""
-        return (sentence for _, sentence in self.dated_course(told, before))
+        return (sentence for _, sentence in self.dated_course(notes, before))
 
     def dated_course(
-        self, told: Sequence[Observation], before: Iterable[Observation]
+        self, observations: Sequence[Observation], before: Iterable[Observation]
     ) -> Iterator[tuple[int, str]]:
         """Yield sentences about what happened, each with its tick.
 
         Args:
-            told: Observations from the first event on.
+            observations: Observations from the first event on.
             before: Earlier observations.
         """
         for sight in before:
             if isinstance(sight, SightChange):
                 self._keep_sight(sight)
-        groups = [list(group) for _, group in itertools.groupby(told, key=_sight_of)]
+        groups = [list(group) for _, group in itertools.groupby(observations, key=_sight_of)]
         for group in groups:
             sights = [sight for sight in group if isinstance(sight, SightChange)]
             if sights:
@@ -242,14 +244,14 @@ class _Teller:
                 thing = "it" if self._it == (self._owner, place) else self._thing(place)
                 yield self._inside(thing, items)
             case Assumed(place=place, items=items):
-                thing, held = self._thing(place), self._things(items)
+                thing, what = self._thing(place), self._things(items)
                 many = sum(items.values()) > 1
-                held = (
-                    f"{held} {'were' if many else 'was'} in {thing}"
-                    if held
+                what = (
+                    f"{what} {'were' if many else 'was'} in {thing}"
+                    if what
                     else f"{thing} was empty"
                 )
-                yield _sentence(f"{self._subject(self._owner)} took it for granted that {held}")
+                yield _sentence(f"{self._subject(self._owner)} took it for granted that {what}")
             case Read(place=place, text=words):
                 thing = self._thing(place)
                 if words:
@@ -306,18 +308,18 @@ class _Teller:
         """Yield sentences about changes of sight at one tick."""
         lost = {each.viewer: list(each.lost_agents) for each in sights}
         seen = {each.viewer: list(each.agents) for each in sights}
-        known = {each.viewer: set(self._in_sight.get(each.viewer, ())) for each in sights}
+        seen_before = {each.viewer: set(self._in_sight.get(each.viewer, ())) for each in sights}
         # Begin with the viewer of whom most changes; others are told with it.
         for each in sorted(sights, key=lambda each: -len(lost[each.viewer])):
             gone = set(each.lost_places)
-            some = len(gone) > 1 and gone == known[each.viewer]
+            some = len(gone) > 1 and gone == seen_before[each.viewer]
             things = ["any of the things there"] if some else map(self._thing, each.lost_places)
             parts = [*map(self._object, lost[each.viewer]), *things]
             if parts:
                 back = self._mutual(each.viewer, lost)
                 nor = f", nor could {listed(back, 'or')} see {self._object(each.viewer)}"
-                told = f"{self._subject(each.viewer)} could no longer see {listed(parts, 'or')}"
-                yield _sentence(told + (nor if back else ""))
+                sentence = f"{self._subject(each.viewer)} could no longer see {listed(parts, 'or')}"
+                yield _sentence(sentence + (nor if back else ""))
             lost[each.viewer] = []
             self._keep_sight(each)
         for each in sorted(sights, key=lambda each: -len(seen[each.viewer])):
@@ -325,8 +327,8 @@ class _Teller:
             if parts:
                 back = self._mutual(each.viewer, seen)
                 also = f", and {listed(back)} could see {self._object(each.viewer)}"
-                told = f"{self._subject(each.viewer)} could now see {listed(parts)}"
-                yield _sentence(told + (also if back else ""))
+                sentence = f"{self._subject(each.viewer)} could now see {listed(parts)}"
+                yield _sentence(sentence + (also if back else ""))
             seen[each.viewer] = []
 
     def _mutual(self, viewer: str, changed: dict[str, list[str]]) -> list[str]:
@@ -340,16 +342,16 @@ class _Teller:
         return [self._object(name) for name in back]
 
     def _keep_sight(self, sight: SightChange) -> None:
-        known = self._in_sight.setdefault(sight.viewer, set())
-        known.difference_update(sight.lost_places)
-        known.update(sight.places)
+        in_sight = self._in_sight.setdefault(sight.viewer, set())
+        in_sight.difference_update(sight.lost_places)
+        in_sight.update(sight.places)
 
     def _seen(self, agents: Iterable[str], places: Iterable[Position]) -> list[str]:
         return [*map(self._object, agents), *map(self._thing, places)]
 
-    def _contents(self, found: Sequence[Found]) -> Iterator[str]:
-        empty = [self._thing(each.place) for each in found if not each.items]
-        for each in found:
+    def _contents(self, contents: Sequence[Found]) -> Iterator[str]:
+        empty = [self._thing(each.place) for each in contents if not each.items]
+        for each in contents:
             if each.items:
                 yield self._inside(self._thing(each.place), each.items)
         if empty:
@@ -360,38 +362,38 @@ class _Teller:
         for at, label in self._labels.items():
             name = self._names.get(at, "")
             if label != name:
-                told = label.removeprefix(name).removeprefix(", ")
-                yield _sentence(f"{self._thing(at)} {told}")
+                look = label.removeprefix(name).removeprefix(", ")
+                yield _sentence(f"{self._thing(at)} {look}")
 
     def _words(self, each: Happened) -> dict[str, str]:
         event = each.event
-        detail, told = event.detail, {}
+        detail, words = event.detail, {}
         if detail.get("items"):
-            told["items"] = self._things(detail["items"])
+            words["items"] = self._things(detail["items"])
         for key in ("to", "other"):
             if detail.get(key):
-                told[key] = self._object(detail[key])
+                words[key] = self._object(detail[key])
         if detail.get("destination") is not None:
-            told["destination"] = self._way_to(detail["destination"]) or "to another place"
+            words["destination"] = self._way_to(detail["destination"]) or "to another place"
         if detail.get("position") is not None:
             again = event.kind in _AT_CONTAINER and self._it == (event.actor, detail["position"])
-            told["thing"] = (
+            words["thing"] = (
                 "it"
                 if again
                 else self._thing(tuple(detail["position"]), detail.get("block") or each.block)
             )
-        return told
+        return words
 
     def _thing(self, at: Position, block: str | None = None, *, mention: bool = False) -> str:
         name = self._names.get(at)
-        known = block or self._blocks[at]
+        state = block or self._blocks[at]
         if name is None:
-            kind = "something" if known is None else block_name(known).replace("_", " ")
-            words = kind if known is None else f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+            kind = "something" if state is None else block_name(state).replace("_", " ")
+            words = kind if state is None else f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
         else:
             words = with_the(name)
-        told = self._coordinates and (mention or self._owner is not None or name is None)
-        return f"{words} at {text.position(at)}" if told else words
+        is_placed = self._coordinates and (mention or self._owner is not None or name is None)
+        return f"{words} at {text.position(at)}" if is_placed else words
 
     def _near(self, point: Point) -> str:
         """Return the named place at a point or the thing near it; empty: there is none."""
@@ -433,8 +435,8 @@ class _Teller:
 
     def _inside(self, thing: str, items: Items) -> str:
         verb = "were" if sum(items.values()) > 1 else "was"
-        held = self._things(items)
-        return _sentence(f"In {thing} {verb} {held}" if held else f"{thing} was empty")
+        things = self._things(items)
+        return _sentence(f"In {thing} {verb} {things}" if things else f"{thing} was empty")
 
     def _subject(self, agent: str | None) -> str:
         if agent is None:

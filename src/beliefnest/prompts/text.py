@@ -43,8 +43,8 @@ def as_json(value: object) -> str:
 
 def nearest(name: str, names: Iterable[str]) -> str:
     """Return the end of a message about an unknown name: similar names, or else all names."""
-    known = sorted(names)
-    close = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
+    candidates = sorted(names)
+    close = difflib.get_close_matches(name, candidates, n=3, cutoff=0.5)
     if close:
         return f"; did you mean {' or '.join(close)}?"
-    return f"; there is {', '.join(known)}" if known else ""
+    return f"; there is {', '.join(candidates)}" if candidates else ""

@@ -107,10 +107,10 @@ class Believed:
             ScenarioError: The entry names no thing or several, or something that does not exist.
         """
         checks.belief_path((*path, "path"), entry.path)
-        given = [kind for kind in cls.kinds if getattr(entry, kind) is not None]
-        if len(given) != 1:
+        kinds = [kind for kind in cls.kinds if getattr(entry, kind) is not None]
+        if len(kinds) != 1:
             raise checks.fault(path, f"name exactly one of {', '.join(cls.kinds)}")
-        kind, thing = given[0], getattr(entry, given[0])
+        kind, thing = kinds[0], getattr(entry, kinds[0])
         match kind:
             case "item":
                 with checks.document.naming((*path, kind)):
@@ -128,8 +128,8 @@ class Believed:
     def written(self) -> dict[str, Any]:
         """Return plain values with the keys of scenario files."""
         thing = self.thing if isinstance(self.thing, str) else list(self.thing)
-        told: dict[str, Any] = {"path": self.path, self.kind: thing}
-        return told if self.unknown == _UNKNOWN else {**told, "unknown": self.unknown}
+        entry: dict[str, Any] = {"path": self.path, self.kind: thing}
+        return entry if self.unknown == _UNKNOWN else {**entry, "unknown": self.unknown}
 
     @property
     def words(self) -> str:
@@ -147,11 +147,11 @@ class Believed:
             ScenarioError: An answer is none of the options, or all options are right, or the agent
                 is near no named place.
         """
-        found = self._found(look(self.path), naming)
+        beliefs = self._found(look(self.path), naming)
         if not options:
-            texts = [name for each in found for name in each.names[: 1 if each.ranked else None]]
+            texts = [name for each in beliefs for name in each.names[: 1 if each.ranked else None]]
             return tuple(dict.fromkeys(texts))
-        right = dict.fromkeys(self._option(each, options) for each in found)
+        right = dict.fromkeys(self._option(each, options) for each in beliefs)
         if len(right) == len(options):
             raise self._fault("all options are right; give one that is not")
         return tuple(option for option in options if option in right)
@@ -166,40 +166,40 @@ class Believed:
         Raises:
             ScenarioError: The place is unknown, or there are several.
         """
-        found = self._found(look(self.path), naming)
-        places = [each.place for each in found if each.place is not None]
+        beliefs = self._found(look(self.path), naming)
+        places = [each.place for each in beliefs if each.place is not None]
         if len(places) != 1:
-            told = listed([each.names[0] for each in found])
-            raise self._fault(f"needs one place, but the belief is: {told}")
+            listed_names = listed([each.names[0] for each in beliefs])
+            raise self._fault(f"needs one place, but the belief is: {listed_names}")
         return places[0]
 
-    def _option(self, found: _Found, options: Sequence[str]) -> str:
-        for name in (*found.names, *found.written):
+    def _option(self, belief: _Found, options: Sequence[str]) -> str:
+        for name in (*belief.names, *belief.written):
             alike = [option for option in options if bare_words(option) == bare_words(name)]
             if len(alike) == 1:
                 return alike[0]
         raise self._fault(
-            f"the right answer is {quoted(found.names[0])}, which is none of the options "
+            f"the right answer is {quoted(belief.names[0])}, which is none of the options "
             f"{', '.join(options)}; add it"
         )
 
     def _found(self, state: State, naming: Naming) -> list[_Found]:
         match self.kind, self.thing:
             case "item", str(name):
-                found = list(_located(state, naming, name))
+                beliefs = list(_located(state, naming, name))
             case "agent", str(name):
-                found = list(self._standing(state, naming, name))
+                beliefs = list(self._standing(state, naming, name))
             case "container", (int(), int(), int()) as at:
-                found = list(_contained(state, at))
+                beliefs = list(_contained(state, at))
             case "sign", (int(), int(), int()) as at:
                 text = state.signs.get(at)
                 said = () if text is None else (sign_words(text),) if text else ("nothing", "blank")
-                found = [_Found(said)] if said else []
+                beliefs = [_Found(said)] if said else []
             case _, (int(), int(), int()) as at:
-                found = list(_stated(state, at))
+                beliefs = list(_stated(state, at))
             case _:
                 raise AssertionError(self.kind)
-        return found or [_Found((self.unknown,))]
+        return beliefs or [_Found((self.unknown,))]
 
     def _standing(self, state: State, naming: Naming, agent: str) -> Iterator[_Found]:
         feet = state.agents[agent].position
@@ -223,12 +223,12 @@ class Believed:
 
 def _located(state: State, naming: Naming, item: str) -> Iterator[_Found]:
     """Yield the containers, agents and places that have an item."""
-    for at, held in state.containers.items():
-        if held.items.get(item):
+    for at, content in state.containers.items():
+        if content.items.get(item):
             words = point_words(at)
             written = (naming.written[at],) if at in naming.written else ()
-            known = () if at in naming.labelled else (words,)
-            yield _Found((naming.objects.get(at, words), *known), place=at, written=written)
+            unlabelled = () if at in naming.labelled else (words,)
+            yield _Found((naming.objects.get(at, words), *unlabelled), place=at, written=written)
     for name, agent in state.agents.items():
         if agent.inventory.get(item) or item in (agent.equipment or {}).values():
             yield _Found((name,), place=agent.position)
@@ -239,10 +239,10 @@ def _located(state: State, naming: Naming, item: str) -> Iterator[_Found]:
 
 
 def _contained(state: State, at: Position) -> Iterator[_Found]:
-    held = state.containers.get(at)
-    if held is None or not (held.items or held.complete):
+    content = state.containers.get(at)
+    if content is None or not (content.items or content.complete):
         return
-    yield _Found(content_names(held.items))
+    yield _Found(content_names(content.items))
 
 
 def content_names(items: Collection[str]) -> tuple[str, ...]:

@@ -151,26 +151,26 @@ class _Builder:
         """Return labels of containers; of two halves of a chest the first that has one counts."""
         labels: dict[Position, str] = {}
         for entry in self._file.containers:
-            if told := label(entry):
-                labels.setdefault(self.checks.container_at(entry.at), told)
+            if text := label(entry):
+                labels.setdefault(self.checks.container_at(entry.at), text)
         return labels
 
     def warnings(self, probes: tuple[Probe, ...]) -> tuple[ScenarioWarning, ...]:
         """Return warnings about the file."""
-        found = scene_warnings(self._document, self._file, self._snapshot, probes)
-        return (*found, *map(ScenarioWarning, self._document.notes))
+        of_scene = scene_warnings(self._document, self._file, self._snapshot, probes)
+        return (*of_scene, *map(ScenarioWarning, self._document.notes))
 
     def _unique(self, initial: Sequence[InitialBelief]) -> frozenset[str]:
         """Return the unique items; refuse those that world or initial beliefs contradict."""
-        found = set()
+        items = set()
         for number, name in enumerate(self._file.unique):
             path = ("unique", number)
             with self._document.naming(path):
                 (item,) = unique_items((name,))
             if fault := unique_fault(item, self._snapshot, initial):
                 raise self._document.fault(path, fault)
-            found.add(item)
-        return frozenset(found)
+            items.add(item)
+        return frozenset(items)
 
     def probe(self, number: int, entry: ProbeEntry) -> Probe:
         """Return one probe with the text of its template."""
@@ -337,8 +337,8 @@ class _Builder:
             count += sum(math.prod(part.shape) for part in parts)
             if fault := believed_fault(count):
                 raise self._document.fault(place, fault)
-            found = (at for part in parts for at in part.positions())
-            blocks |= dict.fromkeys(sorted(found) if len(parts) > 1 else found, state)
+            places = (at for part in parts for at in part.positions())
+            blocks |= dict.fromkeys(sorted(places) if len(parts) > 1 else places, state)
         return blocks
 
     def _believed_places(

@@ -61,8 +61,8 @@ class Checks:
     def agent(self, path: KeyPath, name: str) -> None:
         """Refuse an unknown agent."""
         if name not in self.snapshot.agents:
-            known = ", ".join(self.snapshot.agents)
-            raise self.fault(path, f"there is no agent {quoted(name)}; agents are {known}")
+            agents = ", ".join(self.snapshot.agents)
+            raise self.fault(path, f"there is no agent {quoted(name)}; agents are {agents}")
 
     def container_at(self, position: Position) -> Position:
         """Return the position of the container to which a block belongs: that of its right half."""
@@ -80,9 +80,9 @@ class Checks:
     def container(self, path: KeyPath, position: Position) -> Position:
         """Return the position of a container, given either half; refuse one without a container."""
         if (whole := self.container_at(position)) not in self.snapshot.containers:
-            known = ", ".join(str(list(place)) for place in self.snapshot.containers)
+            places = ", ".join(str(list(place)) for place in self.snapshot.containers)
             raise self.fault(
-                path, f"no container stands at {list(position)}; there are {known or 'none'}"
+                path, f"no container stands at {list(position)}; there are {places or 'none'}"
             )
         return whole
 

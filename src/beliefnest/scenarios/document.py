@@ -154,10 +154,10 @@ def merged(document: Document, condition: int) -> Document:
     base = dict(document.root.value)
     conditions = base.pop("conditions", YamlNode({})).value
     if condition not in conditions:
-        known = ", ".join(str(number) for number in conditions)
+        numbers = ", ".join(str(number) for number in conditions)
         raise ScenarioError(
             f"{document.source}: there is no condition {condition}; "
-            + (f"conditions are {known}" if known else "it has no conditions")
+            + (f"conditions are {numbers}" if numbers else "it has no conditions")
         )
     # Keep the scenario's own description: that of a condition describes only the condition.
     written = conditions[condition]
@@ -189,10 +189,10 @@ def _check_labels(document: Document, path: KeyPath, entries: YamlNode, change: 
     labels = [_label(entry) for entry in entries.value]
     for label in change.value:
         if labels.count(label) != 1:
-            found = "several entries are" if label in labels else "no entry is"
-            written = ", ".join(quoted(known) for known in labels if known)
+            how_many = "several entries are" if label in labels else "no entry is"
+            written = ", ".join(quoted(written_label) for written_label in labels if written_label)
             raise document.fault(
-                (*path, label), f"{found} labelled so; labels are {written or 'not given'}"
+                (*path, label), f"{how_many} labelled so; labels are {written or 'not given'}"
             )
 
 

@@ -149,10 +149,10 @@ def _standing(root: YamlNode, name: object) -> str:
     # The file may have other faults.
     form: Any = plain(root)
     containers, places = form.get("containers"), form.get("places")
-    known = [*places.items()] if isinstance(places, dict) else []
+    labelled = [*places.items()] if isinstance(places, dict) else []
     for each in containers if isinstance(containers, list) else ():
-        known += [(each.get("label"), each.get("at"))] if isinstance(each, dict) else []
-    at = next((at for label, at in known if label == name), None)
+        labelled += [(each.get("label"), each.get("at"))] if isinstance(each, dict) else []
+    at = next((at for label, at in labelled if label == name), None)
     return f"; {quoted(name)} is at {at}" if at and isinstance(name, str) else ""
 
 
@@ -161,8 +161,8 @@ def _found(value: object, what: str) -> str:
     is_short = isinstance(value, float | None) or (
         isinstance(value, int) and value.bit_length() <= _MOST_BITS
     )
-    told = not what.startswith("expected") or ", got" in what
-    return f", got {quoted(value)}" if is_short and not told else ""
+    is_quoted = not what.startswith("expected") or ", got" in what
+    return f", got {quoted(value)}" if is_short and not is_quoted else ""
 
 
 def _allowed(path: KeyPath, value: object, what: str) -> str:

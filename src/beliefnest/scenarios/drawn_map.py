@@ -123,17 +123,17 @@ class _Drawing:
         root = {key: node for key, node in self._document.root.value.items() if key != _KEY}
         cells = list(self._cells())
         self._check_inside(cells)
-        found = [(cell, entry) for cell, entry in self._entries(cells)]
+        cells_drawn = [(cell, entry) for cell, entry in self._entries(cells)]
         lists = {
             "blocks": self._blocks(cells),
-            "containers": [self._container(c) for c, e in found if e.container is not None],
-            "signs": [self._sign(c) for c, e in found if e.sign is not None],
+            "containers": [self._container(c) for c, e in cells_drawn if e.container is not None],
+            "signs": [self._sign(c) for c, e in cells_drawn if e.sign is not None],
         }
         names = {
-            "agents": {name: self._agent(cell) for name, cell in self._named("agent", found)},
+            "agents": {name: self._agent(cell) for name, cell in self._named("agent", cells_drawn)},
             "places": {
                 name: self._position(cell, list(cell.at))
-                for name, cell in self._named("place", found)
+                for name, cell in self._named("place", cells_drawn)
             },
         }
         if not names["agents"] and not self._file.agents:
@@ -162,15 +162,15 @@ class _Drawing:
                 raise self._document.fault(path, "is not one character")
             if isinstance(entry, str):
                 continue
-            given = list(self._node.value["legend"].value[character].value)
-            solid = [key for key in _SOLID if key in given]
+            keys = list(self._node.value["legend"].value[character].value)
+            solid = [key for key in _SOLID if key in keys]
             if len(solid) > 1:
                 raise self._document.fault(path, f"is both {solid[0]} and {solid[1]}; keep one")
-            if not any(key in given for key in _THINGS):
+            if not any(key in keys for key in _THINGS):
                 raise self._document.fault(path, f"shows nothing; give one of {', '.join(_THINGS)}")
-            for key in given:
+            for key in keys:
                 wanted = _NEEDS.get(key, ())
-                if wanted and not any(each in given for each in wanted):
+                if wanted and not any(each in keys for each in wanted):
                     raise self._document.fault(
                         (*path, key), f"needs {' or '.join(wanted)} beside it"
                     )
@@ -201,15 +201,15 @@ class _Drawing:
                 f"has {count:,} characters; at most {_MOST_DRAWN:,} are possible: draw a smaller "
                 "part, and give the rest as `blocks`",
             )
-        found: list[_Floor] = []
+        drawn: list[_Floor] = []
         bottom = self._map.origin[1]
         for place, child, text, height in written:
             rows = [row.rstrip() for row in text.rstrip().split("\n")]
             floor = _Floor(place, child, rows, bottom, height)
-            self._check_shape(floor, found[0] if found else floor)
-            found.append(floor)
+            self._check_shape(floor, drawn[0] if drawn else floor)
+            drawn.append(floor)
             bottom += height
-        return found
+        return drawn
 
     def _check_shape(self, floor: _Floor, first: _Floor) -> None:
         width = len(first.rows[0])
@@ -259,9 +259,9 @@ class _Drawing:
                 for i, character in enumerate(row):
                     cell = _Cell(floor, k, i, character, (x + i, floor.bottom, z + k))
                     if character not in self._legend:
-                        known = " ".join(self._legend)
+                        letters = " ".join(self._legend)
                         raise self._wrong(
-                            cell, f"{quoted(character)} is not in the legend, which has {known}"
+                            cell, f"{quoted(character)} is not in the legend, which has {letters}"
                         )
                     yield cell
 
@@ -405,11 +405,11 @@ class _Drawing:
         return YamlNode(entry, thing.line, thing.origin)
 
     def _named(
-        self, key: str, found: Sequence[tuple[_Cell, LegendEntry]]
+        self, key: str, cells_of_key: Sequence[tuple[_Cell, LegendEntry]]
     ) -> Iterator[tuple[str, _Cell]]:
         """Yield the cells of things with names, each once."""
         first: dict[str, _Cell] = {}
-        for cell, entry in found:
+        for cell, entry in cells_of_key:
             name = getattr(entry, key)
             if name is None:
                 continue
@@ -435,8 +435,8 @@ class _Drawing:
     def _place(self, floor: _Floor, row: int, column: int | None) -> str:
         _, _, *number = floor.path
         named = f"{_KEY}.floors" + "".join(f"[{each}]" for each in number)
-        told = "" if column is None else f", column {column + 1}"
-        return f"{named}, row {row + 1}{told}"
+        column_words = "" if column is None else f", column {column + 1}"
+        return f"{named}, row {row + 1}{column_words}"
 
     def _line(self, floor: _Floor, row: int) -> int:
         """Return the line of a row in the file; the line of the floor if the row is not there."""

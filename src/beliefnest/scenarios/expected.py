@@ -224,17 +224,17 @@ class Expected(ABC):
     def written(self) -> dict[str, Any]:
         """Return plain values with the keys of scenario files."""
 
-    def verdict(self, ok: bool, found: str, *, by_deed: bool = False) -> "Judgement":
+    def verdict(self, ok: bool, instead: str, *, by_deed: bool = False) -> "Judgement":
         """Return the judgement of this expectation.
 
         Args:
             ok: True if it holds.
-            found: What happened instead, for people.
+            instead: What happened instead, for people.
             by_deed: True if something else was done, or said in answer.
         """
         if ok:
             return Judgement(self, ok=True, outcome="ok")
-        return Judgement(self, ok=False, why_not=found, outcome="wrong" if by_deed else None)
+        return Judgement(self, ok=False, why_not=instead, outcome="wrong" if by_deed else None)
 
     @property
     def wanted(self) -> str:
@@ -265,8 +265,8 @@ class Expected(ABC):
             setting: Setting with names of places.
             agent: Name of the agent.
         """
-        told = "" if judged.ok else f": {judged.why_not}"
-        return f"Judged by {self.ground}; that is {judged.words}{told}."
+        reason = "" if judged.ok else f": {judged.why_not}"
+        return f"Judged by {self.ground}; that is {judged.words}{reason}."
 
 
 @dataclass(frozen=True, slots=True)
@@ -310,14 +310,14 @@ class Deed(Expected):
 
 def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
     """Return the expectations of a probe with the keys of scenario files; None: none."""
-    found: dict[str, Any] = {}
+    form: dict[str, Any] = {}
     for each in expected:
         for key, value in each.written().items():
-            if each.many and key in found:
-                found[key] = found[key] | value if key == "inferred" else found[key] + value
+            if each.many and key in form:
+                form[key] = form[key] | value if key == "inferred" else form[key] + value
             else:
-                found[key] = value
-    return found or None
+                form[key] = value
+    return form or None
 
 
 def as_list(entry: T | list[T] | None) -> list[T]:

@@ -62,8 +62,8 @@ class Awaited(Deed):
         believed = Believed.read(getattr(entry, key), (*path, key), checks)
         kinds = ("item",) if key == "opens" else ("item", "agent")
         if believed.kind not in kinds:
-            told = " or ".join(f"{{path: {believed.path}, {kind}: ...}}" for kind in kinds)
-            raise checks.fault((*path, key), f"needs a place; write one, or {told}")
+            forms = " or ".join(f"{{path: {believed.path}, {kind}: ...}}" for kind in kinds)
+            raise checks.fault((*path, key), f"needs a place; write one, or {forms}")
         containers = {place: checks.halves(place) for place in checks.snapshot.containers}
         return cls(key, believed, entry.within, containers)
 
@@ -124,8 +124,8 @@ class Opens(Deed):
 
     def judge(self, trial: Trial) -> Judgement:
         first = trial.opened[:1]
-        found = f"opened {point_words(first[0])} first" if first else "opened nothing"
-        return self.verdict(first == (self.container,), found, by_deed=bool(first))
+        deed = f"opened {point_words(first[0])} first" if first else "opened nothing"
+        return self.verdict(first == (self.container,), deed, by_deed=bool(first))
 
     def told(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, *, alone: bool) -> str:
         opened = container_name(outcome.opened[0], setting) if outcome.opened else "nothing"
@@ -162,14 +162,14 @@ class Arrives(Deed):
             yield cls(entry.arrives, entry.within)
 
     def written(self) -> dict[str, Any]:
-        told = {"arrives": list(self.place), "within": self.within}
-        return told | source_of("arrives", self.believed)
+        entry = {"arrives": list(self.place), "within": self.within}
+        return entry | source_of("arrives", self.believed)
 
     def judge(self, trial: Trial) -> Judgement:
         arrived = trial.arrived
         ok = arrived is not None and math.dist(middle_of(self.place), arrived) <= self.within
-        found = "is nowhere" if arrived is None else f"ended at {point_words(arrived)}"
-        return self.verdict(ok, found)
+        deed = "is nowhere" if arrived is None else f"ended at {point_words(arrived)}"
+        return self.verdict(ok, deed)
 
     def told(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, *, alone: bool) -> str:
         where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
@@ -219,13 +219,13 @@ class Intends(Deed):
             yield cls(entry.intends, entry.within, checks.halves(block_at(entry.intends)))
 
     def written(self) -> dict[str, Any]:
-        told = {"intends": list(self.place), "within": self.within}
-        return told | source_of("intends", self.believed)
+        entry = {"intends": list(self.place), "within": self.within}
+        return entry | source_of("intends", self.believed)
 
     def judge(self, trial: Trial) -> Judgement:
         intended = trial.intended
-        found = f"made for {'nothing' if intended is None else point_words(intended)}"
-        return self.verdict(self._met(trial), found, by_deed=intended is not None)
+        deed = f"made for {'nothing' if intended is None else point_words(intended)}"
+        return self.verdict(self._met(trial), deed, by_deed=intended is not None)
 
     def _met(self, trial: Trial) -> bool:
         used, walked = trial.used, trial.walked
@@ -277,8 +277,8 @@ class Takes(Deed):
             if event.kind is EventKind.GET_ITEM_FROM_CHEST and event.actor == trial.agent:
                 taken.update(event.detail["items"])
         ok = all(taken[name] >= count for name, count in self.items.items())
-        found = f"took {items_words(taken, ids=True) or 'nothing'}"
-        return self.verdict(ok, found, by_deed=bool(taken))
+        deed = f"took {items_words(taken, ids=True) or 'nothing'}"
+        return self.verdict(ok, deed, by_deed=bool(taken))
 
 
 @dataclass(frozen=True, slots=True)

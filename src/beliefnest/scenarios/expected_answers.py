@@ -67,17 +67,17 @@ class Answers(Expected):
                 believed = Believed.read(each.right, (*place, "right"), checks)
             else:
                 right = (each.right,) if isinstance(each.right, str) else tuple(each.right)
-            found = cls(
+            expected = cls(
                 each.question, right, tuple(each.options), tuple(each.wrong), each.reason, believed
             )
-            for key, message in found._faults():
+            for key, message in expected._faults():
                 raise checks.fault((*place, *key), message)
-            yield found
+            yield expected
 
     def _faults(self) -> Iterator[tuple[KeyPath, str]]:
         right, options = self.right, self.options
-        given = self.believed is not None or (right and all(each.strip() for each in right))
-        if not self.question.strip() or not given:
+        is_complete = self.believed is not None or (right and all(each.strip() for each in right))
+        if not self.question.strip() or not is_complete:
             yield (), "give a question and at least one right answer"
         missing = [each for each in right if each not in options]
         if options and missing:
@@ -119,17 +119,17 @@ class Answers(Expected):
         return list(self.right)
 
     def resolved(self, look: StateOf, naming: Naming) -> "Expected":
-        known = () if self.options else naming.all
+        names = () if self.options else naming.all
         if self.believed is None or self.right:
-            return replace(self, known=known)
-        found = replace(self, known=known, right=self.believed.answers(look, naming, self.options))
-        both = [each for each in found.right if each in self.wrong]
+            return replace(self, known=names)
+        made = replace(self, known=names, right=self.believed.answers(look, naming, self.options))
+        both = [each for each in made.right if each in self.wrong]
         if both:
             raise ScenarioError(
                 f"{self.believed.where}the belief gives {quoted(both[0])}, which 'wrong' names as "
                 "well"
             )
-        return found
+        return made
 
     def judge(self, reply: Answered) -> Judgement:
         """Judge the reply to the question."""
@@ -147,26 +147,26 @@ class Answers(Expected):
     def _judge_words(self, answer: str) -> Judgement:
         """Judge an answer in words: it must name a right answer and nothing else that is known."""
         right = self.right if self.believed is None else self.believed.accepted(self.right)
-        known = list(dict.fromkeys([*right, *self.wrong, *self.known]))
-        named = named_in_words(answer, known)
-        chosen = {known[number] for number in named.yes}
-        told = f"answered {quoted(answer)}"
+        names = list(dict.fromkeys([*right, *self.wrong, *self.known]))
+        named = named_in_words(answer, names)
+        chosen = {names[number] for number in named.yes}
+        answer_words = f"answered {quoted(answer)}"
         other = bool(chosen - set(right)) or named.alternative
         if named.unsure or (chosen & set(right) and other):
-            told += ", which is ambiguous"
-            return Judgement(self, ok=False, why_not=told, outcome="ambiguous")
+            answer_words += ", which is ambiguous"
+            return Judgement(self, ok=False, why_not=answer_words, outcome="ambiguous")
         if not chosen and named.any:
-            told += ", which names no answer"
-            return Judgement(self, ok=False, why_not=told, outcome="unread")
-        return self.verdict(bool(chosen & set(right)), told, by_deed=True)
+            answer_words += ", which names no answer"
+            return Judgement(self, ok=False, why_not=answer_words, outcome="unread")
+        return self.verdict(bool(chosen & set(right)), answer_words, by_deed=True)
 
     def told(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, *, alone: bool) -> str:
         answers = {each.question: each.answer for each in outcome.replies}
-        told = f"answers {answers.get(self.question) or 'nothing'}"
-        return told if judged.ok else f"{told}, right is {listed(self.right, 'or')}"
+        answer_words = f"answers {answers.get(self.question) or 'nothing'}"
+        return answer_words if judged.ok else f"{answer_words}, right is {listed(self.right, 'or')}"
 
     def account(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, agent: str) -> str:
-        told = "" if judged.ok else f": {judged.why_not}"
+        reason = "" if judged.ok else f": {judged.why_not}"
         source = "" if self.believed is None else f" ({self.believed.words}; computed by the nest)"
         right = listed([repr(each) for each in self.right], "or")
-        return f"Judged by {self.ground}; right is {right}{source}; that is {judged.words}{told}."
+        return f"Judged by {self.ground}; right is {right}{source}; that is {judged.words}{reason}."

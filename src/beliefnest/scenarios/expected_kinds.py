@@ -69,8 +69,8 @@ class Infers(Expected):
         for word, bound in self._bounds.items():
             number = means[bound] if isinstance(bound, str) else bound
             if not (mean > number if word == "above" else mean < number):
-                told = f"{bound} ({number:.3g})" if isinstance(bound, str) else f"{number:g}"
-                return f"{self.factor} is {mean:.3g}, not {word} {told}"
+                bound_words = f"{bound} ({number:.3g})" if isinstance(bound, str) else f"{number:g}"
+                return f"{self.factor} is {mean:.3g}, not {word} {bound_words}"
         return None
 
 
@@ -95,11 +95,11 @@ def read_expected(entry: ExpectEntry, path: KeyPath, checks: Checks) -> tuple[Ex
     Raises:
         ScenarioError: The entry is not consistent; the message names file, line and key.
     """
-    found = tuple(each for kind in KINDS for each in kind.read(entry, path, checks))
-    if not found:
+    expected = tuple(each for kind in KINDS for each in kind.read(entry, path, checks))
+    if not expected:
         keys = [key for key in entry.__struct_fields__ if key not in ("within", "inferred")]
         raise checks.fault(path, f"expects nothing; give at least one of {', '.join(keys)}")
-    return found
+    return expected
 
 
 def read_inferred(
@@ -122,7 +122,7 @@ def read_inferred(
     path = (*path, "inferred")
     if not entry.inferred:
         raise checks.fault(path, "expects nothing; name a factor, such as utility.K")
-    found = []
+    inferred = []
     for factor, bounds in entry.inferred.items():
         expected = Infers(factor, bounds.above, bounds.below)
         for name in expected.factors:
@@ -133,5 +133,5 @@ def read_inferred(
                 )
         if bounds.above is None and bounds.below is None:
             raise checks.fault((*path, factor), "expects nothing; give above, below or both")
-        found.append(expected)
-    return tuple(found)
+        inferred.append(expected)
+    return tuple(inferred)

@@ -96,8 +96,8 @@ class Progress:
         """
         if self.reached is not None:
             return
-        held = [condition.holds(look) for condition in self.goal.conditions]
-        for number, holds in enumerate(held):
+        are_met = [condition.holds(look) for condition in self.goal.conditions]
+        for number, holds in enumerate(are_met):
             if holds:
                 self.first.setdefault(number, tick)
         if self.violated is not None:
@@ -105,12 +105,12 @@ class Progress:
         self.messages += messages
         count = len(self.goal.reach)
         if (
-            any(held[count:])
+            any(are_met[count:])
             or (self.goal.messages is not None and self.messages > self.goal.messages)
             or (self.goal.ticks is not None and tick - self.start > self.goal.ticks)
         ):
             self.violated = tick
-        elif count and all(held[:count]):
+        elif count and all(are_met[:count]):
             self.reached = tick
 
     def succeeded(self, *, over: bool) -> bool:

@@ -47,27 +47,27 @@ def has_instances(document: Document) -> bool:
     return _KEY in document.root.value
 
 
-def drawn_instance(document: Document, seed: int, given: Mapping[str, object]) -> dict[str, Any]:
+def drawn_instance(document: Document, seed: int, chosen: Mapping[str, object]) -> dict[str, Any]:
     """Return the values of all parameters that an instance sets.
 
     Args:
         document: Document of the scenario.
         seed: Number of the instance.
-        given: Values of parameters that are not drawn.
+        chosen: Values of parameters that are not drawn.
 
     Raises:
         ScenarioError: The scenario or a rule is wrong, or no draw keeps all rules.
     """
-    drawing = _Drawing.of(document, given)
+    drawing = _Drawing.of(document, chosen)
     # A draw that makes no scenario is rejected; what is wrong in every draw is said at once. Given
     # values need not fit the defaults of parameters that are drawn.
     written = scenario_in(document, None)
-    check_declared(document, drawing.declared, given)
+    check_declared(document, drawing.declared, chosen)
     drawing.check_agents(written.setting.snapshot.agents)
     chance = random.Random(f"{written.setting.name} {seed}")
     refused: Counter[str] = Counter()
     for _ in range(_MOST_DRAWS):
-        values = {**drawing.draw(chance), **given}
+        values = {**drawing.draw(chance), **chosen}
         fault = drawing.fault(values)
         if fault is None:
             return values
@@ -97,7 +97,7 @@ class _Drawing:
     cells: Mapping[str, list[Position]]
 
     @classmethod
-    def of(cls, document: Document, given: Mapping[str, object]) -> "_Drawing":
+    def of(cls, document: Document, chosen: Mapping[str, object]) -> "_Drawing":
         """Return the rules of a document.
 
         Raises:
@@ -110,7 +110,7 @@ class _Drawing:
         rules = {
             name: _rule(document, name, node, declared) for name, node in written.value.items()
         }
-        drawn = {name: rule for name, rule in rules.items() if name not in given}
+        drawn = {name: rule for name, rule in rules.items() if name not in chosen}
         cells = {
             name: _cells_of(rule.within) for name, rule in drawn.items() if rule.within is not None
         }
@@ -123,8 +123,8 @@ class _Drawing:
             for key in ("seen_by", "hidden_from", "reached_by"):
                 for agent in getattr(rule, key):
                     if agent not in agents:
-                        told = f"there is no agent {quoted(agent)}; agents are {', '.join(agents)}"
-                        raise self.document.fault((_KEY, name, key), told)
+                        why = f"there is no agent {quoted(agent)}; agents are {', '.join(agents)}"
+                        raise self.document.fault((_KEY, name, key), why)
 
     def draw(self, chance: random.Random) -> dict[str, Any]:
         """Return values of all drawn parameters, which may break rules."""

@@ -44,12 +44,12 @@ def _with_holes(entry: dict[str, Any]) -> dict[str, Any]:
 
 
 def _or_hole(value: dict[str, Any]) -> dict[str, Any]:
-    told: dict[str, Any] = {k: value[k] for k in ("description", "default") if k in value}
-    bare = {key: part for key, part in value.items() if key not in told}
+    about: dict[str, Any] = {k: value[k] for k in ("description", "default") if k in value}
+    bare = {key: part for key, part in value.items() if key not in about}
     forms = [_holes_inside(form) for form in bare.get("anyOf", [bare] if bare else [])]
     if forms and all(form.get("type") != "string" for form in forms):
         forms.append({"$ref": "#/$defs/Hole"})
-    return {**told, **({"anyOf": forms} if len(forms) > 1 else bare)}
+    return {**about, **({"anyOf": forms} if len(forms) > 1 else bare)}
 
 
 def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
@@ -146,12 +146,12 @@ _WORDS = {
 
 
 def _words(form: dict[str, Any]) -> str:
-    told, _ = _WORDS[form["type"]]
+    words, _ = _WORDS[form["type"]]
     if form["type"] not in ("array", "object"):
-        return told
+        return words
     if keys := form.get("required") or list(form.get("properties", {})):
-        return f"{told} with keys such as {', '.join(keys[:5])}"
-    return f"{told} such as {_example(form)}"
+        return f"{words} with keys such as {', '.join(keys[:5])}"
+    return f"{words} such as {_example(form)}"
 
 
 def _example(form: dict[str, Any], number: int = 1) -> str:
@@ -163,30 +163,30 @@ def _example(form: dict[str, Any], number: int = 1) -> str:
     """
     match form:
         case {"prefixItems": list(parts)}:
-            told = f"[{', '.join(_example(part, n) for n, part in enumerate(parts, 1))}]"
+            example = f"[{', '.join(_example(part, n) for n, part in enumerate(parts, 1))}]"
         case {"items": dict(part)}:
-            told = f"[{_example(part)}]"
+            example = f"[{_example(part)}]"
         case {"additionalProperties": {"type": "integer"}}:
-            told = "{diamond: 1}"
+            example = "{diamond: 1}"
         case {"additionalProperties": dict(part)}:
-            told = f"{{name: {_example(part)}}}"
+            example = f"{{name: {_example(part)}}}"
         case {"anyOf": [dict(part), *_]}:
-            told = _example(part, number)
+            example = _example(part, number)
         case {"type": "integer" | "number"}:
-            told = str(number)
+            example = str(number)
         case _:
-            told = _WORDS[form.get("type", "object")][1]
-    return told
+            example = _WORDS[form.get("type", "object")][1]
+    return example
 
 
 def _places(path: Iterable[str | int], file: type = ScenarioFile) -> list[dict[str, Any]]:
     """Return the schema's definitions for a place of a file, one for each form."""
     definitions = (_form() if file is ScenarioFile else msgspec.json.schema(file))["$defs"]
-    found = [definitions[file.__name__]]
+    places = [definitions[file.__name__]]
     for key in path:
-        inner = [_inside(definition, key) for definition in found]
-        found = [leaf for choice in inner for leaf in _choices(choice, definitions)]
-    return found
+        inner = [_inside(definition, key) for definition in places]
+        places = [leaf for choice in inner for leaf in _choices(choice, definitions)]
+    return places
 
 
 def _inside(definition: dict[str, Any], key: str | int) -> dict[str, Any]:

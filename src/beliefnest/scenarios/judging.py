@@ -31,11 +31,11 @@ def outcome_of(verdicts: Sequence[Judgement], result: ProgramResult | None) -> s
         result: Result of the program; None: there is no program.
     """
     failed = [each for each in verdicts if not each.ok]
-    told = [each.outcome for each in failed]
+    outcomes = [each.outcome for each in failed]
     if result is not None and result.killed:
         return "error"
     for outcome in ("error", *reversed(NOT_ANSWERED), "wrong"):
-        if outcome in told:
+        if outcome in outcomes:
             return outcome
     if result is not None and result.error is not None and (failed or not verdicts):
         return "no_way" if result.error.reason == NO_WAY else "program_failed"
@@ -58,5 +58,5 @@ def without_result_words(count: int, total: int, counting: int) -> str:
         counting: Number of those that count as not right.
     """
     those = f"{counting} of them " if 0 < counting < count else ""
-    told = f"{those}counted as not right" if counting else "counted in no rate"
-    return f"{count} of {total} cells have no answer, {told}"
+    how_counted = f"{those}counted as not right" if counting else "counted in no rate"
+    return f"{count} of {total} cells have no answer, {how_counted}"

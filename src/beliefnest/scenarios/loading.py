@@ -72,8 +72,8 @@ def scenario_in(
             for number, other in written.conditions.items()
         }
         chosen = change(chosen)
-        told = YamlNode({**chosen.root.value, "conditions": wrapped(about)})
-        chosen = replace(chosen, text=text_of(told))
+        described = YamlNode({**chosen.root.value, "conditions": wrapped(about)})
+        chosen = replace(chosen, text=text_of(described))
     same = chosen.root is filled.root
     file = written if same and isinstance(written, ScenarioFile) else check_form(chosen)
     return build_scenario(chosen, file, condition, written.conditions)

@@ -38,8 +38,8 @@ def respelled(document: Document) -> Document:
         return document
     line = min(spelling.advice.values())
     place = f"{document.source}:{line}" if line else document.source
-    told = f"{place}: has facts in an older spelling; write {', '.join(spelling.advice)}"
-    return replace(document, root=root, notes=(*document.notes, told))
+    note = f"{place}: has facts in an older spelling; write {', '.join(spelling.advice)}"
+    return replace(document, root=root, notes=(*document.notes, note))
 
 
 @dataclass(slots=True)
@@ -92,19 +92,19 @@ class _Spelling:
         return replace(node, value={**node.value, "within": within})
 
     def _claim(self, node: YamlNode, base: YamlNode | None) -> YamlNode:
-        told = dict(node.value)
-        kind, place, item = (told.pop(key, YamlNode(None)) for key in ("kind", "place", "item"))
+        entry = dict(node.value)
+        kind, place, item = (entry.pop(key, YamlNode(None)) for key in ("kind", "place", "item"))
         match kind.value, item.value:
             case "located", str(name):
-                told |= {"container": place, "items": YamlNode({name: YamlNode(1)}, item.line)}
+                entry |= {"container": place, "items": YamlNode({name: YamlNode(1)}, item.line)}
             case "absent", str():
-                told |= {"container": place, "lacks": item}
+                entry |= {"container": place, "lacks": item}
             case "position" | "block", _:
-                told["at" if kind.value == "position" else "block"] = place
+                entry["at" if kind.value == "position" else "block"] = place
             case _:
                 return node
         self._note("claims as facts, such as 'container' and 'items'", node)
-        return replace(node, value=told)
+        return replace(node, value=entry)
 
     def _alternative(self, node: YamlNode, base: YamlNode | None) -> YamlNode:
         self._note("the alternatives of 'doubt' as lists of facts", node)
@@ -136,8 +136,8 @@ class _Spelling:
             self._note(f"'within: {_OLD_WITHIN:g}' where a place has none", node)
         return entry.get("within", YamlNode(_OLD_WITHIN))
 
-    def _note(self, told: str, node: YamlNode) -> None:
-        self.advice.setdefault(told, node.line)
+    def _note(self, advice: str, node: YamlNode) -> None:
+        self.advice.setdefault(advice, node.line)
 
 
 def _changed(

@@ -91,12 +91,12 @@ class ProbeOutcome:
         """Return what is not as expected, or why there is no result; empty if all is well."""
         if self.outcome == "ok":
             return ""
-        told = [each.why_not for each in self.verdicts if not each.ok]
+        reasons = [each.why_not for each in self.verdicts if not each.ok]
         if self.fault:
-            told.append(self.fault)
+            reasons.append(self.fault)
         elif self.outcome in ("no_way", "program_failed", "error") and self.error is not None:
-            told.append(str(self.error))
-        return "; ".join(dict.fromkeys(told))
+            reasons.append(str(self.error))
+        return "; ".join(dict.fromkeys(reasons))
 
     @property
     def error(self) -> Fault | None:
@@ -187,10 +187,10 @@ class Outcome:
     def __repr__(self) -> str:
         number = self.scenario.condition
         name = self.scenario.name + ("" if number is None else f", condition {number}")
-        held = f"{sum(each.ok for each in self.expectations)} of {len(self.expectations)} beliefs"
+        facts = f"{sum(each.ok for each in self.expectations)} of {len(self.expectations)} beliefs"
         judged = [probe for probe in self.probes if probe.ok is not None]
         right = f"{sum(bool(probe.ok) for probe in judged)} of {len(judged)} predictions"
-        return f"<{name}, {self.ticks} ticks: {held} and {right} as expected>"
+        return f"<{name}, {self.ticks} ticks: {facts} and {right} as expected>"
 
     def state(self, path: str) -> State:
         """Return the state of a simulator that the scenario names, after the script."""
@@ -212,7 +212,7 @@ class Outcome:
     @property
     def failures(self) -> tuple[str, ...]:
         """Return a line for each unmet expectation: its name, and what happened instead."""
-        held = [
+        beliefs = [
             f"{each.expectation.label or each.expectation.path}: {each.why_not}"
             for each in self.expectations
             if not each.ok
@@ -222,4 +222,4 @@ class Outcome:
             for number, probe in enumerate(self.probes, start=1)
             if probe.ok is False
         ]
-        return (*held, *asked)
+        return (*beliefs, *asked)

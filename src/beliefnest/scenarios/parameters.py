@@ -85,20 +85,20 @@ def _declared(document: Document, name: object, entry: YamlNode) -> ParameterEnt
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise document.fault(path, "is no name; use letters, digits and _")
     try:
-        found = msgspec.convert(plain(entry), ParameterEntry)
+        declaration = msgspec.convert(plain(entry), ParameterEntry)
     except msgspec.ValidationError as error:
         raise entry_fault(document, path, str(error)) from None
-    if found.values and found.range is not None:
+    if declaration.values and declaration.range is not None:
         raise document.fault(path, "give 'values' or 'range', not both")
-    if found.range is not None and found.range[0] > found.range[1]:
+    if declaration.range is not None and declaration.range[0] > declaration.range[1]:
         raise document.fault((*path, "range"), "ends below its beginning")
-    if found.step is not None and (found.range is None or found.step < 0):
+    if declaration.step is not None and (declaration.range is None or declaration.step < 0):
         raise document.fault((*path, "step"), "needs a range, and must not be below 0")
-    if found.range is not None and not all(map(math.isfinite, found.range)):
+    if declaration.range is not None and not all(map(math.isfinite, declaration.range)):
         raise document.fault((*path, "range"), "has an end that is no finite number")
-    if found.range is not None and _count_of(found) > _MOST_VALUES:
+    if declaration.range is not None and _count_of(declaration) > _MOST_VALUES:
         raise document.fault(path, f"has more than {_MOST_VALUES:,} values; give a greater step")
-    return found
+    return declaration
 
 
 def _count_of(declared: ParameterEntry) -> float:
@@ -130,16 +130,16 @@ def broken_constraint(
 
 
 def check_declared(
-    document: Document, declared: Mapping[str, ParameterEntry], given: Mapping[str, object]
+    document: Document, declared: Mapping[str, ParameterEntry], values: Mapping[str, object]
 ) -> None:
     """Check that all given parameters are declared, and have values.
 
     Raises:
         ScenarioError: One does not.
     """
-    if not isinstance(given, Mapping):
-        raise document.fault((), f"parameters is {quoted(given)}; give values by name")
-    for name, value in given.items():
+    if not isinstance(values, Mapping):
+        raise document.fault((), f"parameters is {quoted(values)}; give values by name")
+    for name, value in values.items():
         if name not in declared:
             hint = nearest_or_all(str(name), [*declared] or ["none"], "declared are")
             raise document.fault((), f"there is no parameter {quoted(name)}{hint}")
@@ -148,14 +148,14 @@ def check_declared(
 
 
 def _beyond(
-    document: Document, declared: Mapping[str, ParameterEntry], given: Mapping[str, object]
+    document: Document, declared: Mapping[str, ParameterEntry], values: Mapping[str, object]
 ) -> Iterator[str]:
     """Yield a line about each given value that its parameter does not list."""
-    for name, each in given.items():
+    for name, each in values.items():
         value = plain(wrapped(each))
-        if told := _listed_instead(declared[name], value):
+        if listed_values := _listed_instead(declared[name], value):
             place = document.key_at(("parameters", name))
-            yield f"{place}is given {quoted(value)}, and lists {told}; correct one of them"
+            yield f"{place}is given {quoted(value)}, and lists {listed_values}; correct one of them"
 
 
 def _listed_instead(declared: ParameterEntry, value: object) -> str:
@@ -172,13 +172,13 @@ def _listed_instead(declared: ParameterEntry, value: object) -> str:
 
 
 def with_parameters(
-    document: Document, given: Mapping[str, object], condition: int | None = None
+    document: Document, named: Mapping[str, object], condition: int | None = None
 ) -> Document:
     """Return a document with its parameters filled in, without declarations and constraints.
 
     Args:
         document: The document as written.
-        given: Values of parameters, by name; the others have their defaults.
+        named: Values of parameters, by name; the others have their defaults.
         condition: Number of the condition whose defaults and constraints apply; None: none.
 
     Raises:
@@ -187,15 +187,15 @@ def with_parameters(
     """
     _check_instances(document, condition)
     declared = declared_in(document, condition)
-    check_declared(document, declared, given)
+    check_declared(document, declared, named)
     if not declared:
         # A `${...}` that names nothing is refused here too; it would be shown to people.
         _Filling(document, {}).node(document.root, ())
         return document
-    notes = (*document.notes, *_unused(document, declared), *_beyond(document, declared, given))
+    notes = (*document.notes, *_unused(document, declared), *_beyond(document, declared, named))
     document = replace(document, notes=notes)
     values = _resolved(
-        document, {name: given.get(name, entry.default) for name, entry in declared.items()}
+        document, {name: named.get(name, entry.default) for name, entry in declared.items()}
     )
     broken = broken_constraint(document, values, condition)
     if broken is not None:
@@ -242,7 +242,7 @@ def _resolved(document: Document, values: Mapping[str, object]) -> dict[str, obj
 
 def _names_within(node: YamlNode) -> frozenset[str]:
     """Return the names in all `${...}` of a value and its keys, and in constraints."""
-    found: set[str] = set()
+    names: set[str] = set()
     for part in (node, *_parts(node)):
         keys = part.value if isinstance(part.value, dict) else {}
         inner = keys.get("constraints")
@@ -251,8 +251,8 @@ def _names_within(node: YamlNode) -> frozenset[str]:
             expressions += _HOLE.findall(text) if isinstance(text, str) else []
         for expression in expressions:
             with suppress(InputError):
-                found |= names_in(expression)
-    return frozenset(found)
+                names |= names_in(expression)
+    return frozenset(names)
 
 
 def _check_instances(document: Document, condition: int | None) -> None:
@@ -330,10 +330,10 @@ class _Filling:
         whole = _HOLE.fullmatch(node.value)
         if whole is None:
             return YamlNode(self._text(node.value, path), node.line)
-        found = self._found(whole, path)
-        if found is None:
+        value_of_hole = self._found(whole, path)
+        if value_of_hole is None:
             return node
-        value = _on_line(wrapped(found[0]), node.line)
+        value = _on_line(wrapped(value_of_hole[0]), node.line)
         for part in (value, *_parts(value)):
             if isinstance(part.value, str):
                 self._check_whole(part.value, path)
@@ -346,8 +346,8 @@ class _Filling:
             return text
 
         def written(hole: re.Match[str]) -> str:
-            found = self._found(hole, path)
-            return hole[0] if found is None else _written(found[0])
+            value_of_hole = self._found(hole, path)
+            return hole[0] if value_of_hole is None else _written(value_of_hole[0])
 
         filled = _HOLE.sub(written, text)
         self._check_whole(filled, path)
@@ -359,11 +359,11 @@ class _Filling:
             return
         for left in _HOLE.finditer(text):
             if not self._is_javascript(left, path):
-                told = "would hold {} from a parameter's value; name a declared parameter"
-                raise self._document.fault(path, told.format(quoted(left[0])))
+                message = "would hold {} from a parameter's value; name a declared parameter"
+                raise self._document.fault(path, message.format(quoted(left[0])))
         if _HOLE.search(text) is None and not self._in_value and not _is_program(path):
-            told = "has a '${' without an expression; write ${NAME}, with no braces inside"
-            raise self._document.fault(path, told)
+            message = "has a '${' without an expression; write ${NAME}, with no braces inside"
+            raise self._document.fault(path, message)
 
     def _is_javascript(self, hole: re.Match[str], path: KeyPath) -> bool:
         """Return True if a `${...}` may belong to a template literal of JavaScript."""

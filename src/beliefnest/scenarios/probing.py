@@ -66,8 +66,8 @@ class _Programs:
     @property
     def last(self) -> Round | None:
         """Return the last round with a program, or else the last one; None: there is none."""
-        given = [each for each in self.attempts if each.program is not None]
-        return (given or self.attempts)[-1] if self.attempts else None
+        with_program = [each for each in self.attempts if each.program is not None]
+        return (with_program or self.attempts)[-1] if self.attempts else None
 
 
 def run_probe(
@@ -210,12 +210,12 @@ def _ask_for_program(
 def _without_program(
     probe: Probe, attempts: tuple[Round, ...], error: ModelError, outcome: str, usage: Usage
 ) -> _Programs:
-    told = tuple(
+    replies = tuple(
         Judgement(each, ok=False, why_not="there is no program", outcome=outcome)
         for each in probe.expect
         if isinstance(each, Deed)
     )
-    return _Programs(attempts, None, told, str(error), outcome, usage)
+    return _Programs(attempts, None, replies, str(error), outcome, usage)
 
 
 class _Prompts:

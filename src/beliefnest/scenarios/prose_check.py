@@ -44,10 +44,10 @@ def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
         nest: The nest after the script.
         probes: Probes with their right answers.
     """
-    told = built_in_template("story").text
+    story = built_in_template("story").text
     for number, probe in enumerate(probes, 1):
         name = repr(probe.label) if probe.label else str(number)
-        for question in probe.questions if probe.template == told else ():
+        for question in probe.questions if probe.template == story else ():
             _, fault = check_prose(nest, probe, question)
             if fault and question.believed is not None:
                 where = question.believed.where
@@ -81,14 +81,14 @@ def check_prose(nest: Nest, probe: Probe, question: Answers) -> tuple[ProseVerdi
     except UnreadError:
         return "unread", ""
     named = {each for names in read for each in names}
-    told = {_key(each) for each in named}
+    says = {_key(each) for each in named}
     if believed.kind == "item":
-        follows = told == right
+        follows = says == right
     else:
         # A place may have several names, of which the options have another one than the story.
         options = {_key(each) for each in question.options}
         is_named = believed.kind == "agent" and not named <= {_ELSEWHERE, believed.unknown}
-        follows = bool(told & right) or (is_named and bool(options) and not told & options)
+        follows = bool(says & right) or (is_named and bool(options) and not says & options)
     if follows:
         return "follows", ""
     said, best = (
@@ -108,24 +108,24 @@ def _read(nest: Nest, story: str, believed: Believed) -> Sequence[tuple[str, ...
         UnreadError: The story does not make it clear.
     """
     perception = nest.setting.perception
-    path, told = parse_path(believed.path, nest.agents), perception.testimony
+    path, trust = parse_path(believed.path, nest.agents), perception.testimony
     if perception.containers == "transparent" and believed.kind in ("item", "container"):
         raise UnreadError("the story does not tell what is seen in containers")
     match believed.kind, believed.thing:
         case "item", str(item):
-            return [(each,) for each in read_places(story, path, item, told) or {believed.unknown}]
+            return [(each,) for each in read_places(story, path, item, trust) or {believed.unknown}]
         case "container", (int(), int(), int()) as at:
             states = [nest[each].state for each in ("/", believed.path)]
             items = {item for each in states for item in _items(each)}
-            held = read_contents(story, path, _name(nest, at), sorted(items), told)
+            content = read_contents(story, path, _name(nest, at), sorted(items), trust)
             # Stories seldom make clear if somebody knows that a container is empty.
-            return [content_names(held) if held else (believed.unknown, *content_names(()))]
+            return [content_names(content) if content else (believed.unknown, *content_names(()))]
         case "agent", str(name):
             if perception.negative_evidence:
                 raise UnreadError("the story does not tell which empty places are seen")
-            seen = read_last_seen(story, path, titled(name), told)
+            seen = read_last_seen(story, path, titled(name), trust)
         case _, (int(), int(), int()) as at:
-            seen = read_last_seen(story, path, _name(nest, at), told)
+            seen = read_last_seen(story, path, _name(nest, at), trust)
         case _:
             raise AssertionError(believed.kind)
     return [(seen, "blank") if seen == "nothing" else (seen or believed.unknown,)]

@@ -53,8 +53,8 @@ class _Reader:
         """Return the places of the item in the belief after a whole story."""
         self.places = [set() for _ in range(len(self.path) + 1)]
         for sentence in _sentences(text):
-            told = re.fullmatch(r"(?:.* )?(heard it|knew that)", sentence)
-            if told is None:
+            match = re.fullmatch(r"(?:.* )?(heard it|knew that)", sentence)
+            if match is None:
                 self._everybody_hears()
             if not self._beginning(sentence) and not self._sight(sentence):
                 self._act(sentence)
@@ -68,25 +68,25 @@ class _Reader:
 
     def _beginning(self, sentence: str) -> bool:
         """Read a sentence about the beginning; False: it is none."""
-        if told := re.fullmatch(r"This is a story about (.*)", sentence):
-            self.people = tuple(re.split(r", | and ", told[1]))
+        if hit := re.fullmatch(r"This is a story about (.*)", sentence):
+            self.people = tuple(re.split(r", | and ", hit[1]))
             self.sees = {name: set() for name in self.people}
-        elif told := re.fullmatch(r"There (?:was|were) (?!only one )(.*)", sentence):
-            self.things = tuple(re.split(r", | and ", told[1]))
-        elif told := re.fullmatch(r"There was only (.*)", sentence):
-            self.is_only = self.is_only or f"one {self.item}" in re.split(r", | and ", told[1])
-        elif told := re.fullmatch(rf"({self._who}) had (.*)", sentence):
-            self.had = told[1] if self._names_item(told[2]) else None
+        elif hit := re.fullmatch(r"There (?:was|were) (?!only one )(.*)", sentence):
+            self.things = tuple(re.split(r", | and ", hit[1]))
+        elif hit := re.fullmatch(r"There was only (.*)", sentence):
+            self.is_only = self.is_only or f"one {self.item}" in re.split(r", | and ", hit[1])
+        elif hit := re.fullmatch(rf"({self._who}) had (.*)", sentence):
+            self.had = hit[1] if self._names_item(hit[2]) else None
             if self.had is not None:
                 self._put(self.had, self._knowing({self.had}))
-        elif told := re.fullmatch(r"(.*) knew that", sentence):
+        elif hit := re.fullmatch(r"(.*) knew that", sentence):
             if self.had is not None:
-                knowing = self._those(told[1], self.had)
-                known = self._knowing({self.had, *knowing}, is_common=told[1] == "Everybody else")
-                self._put(self.had, known)
-        elif told := re.fullmatch(r"In (.*?) (?:was|were) (.*)", sentence):
-            if self._names_item(told[2]):
-                self.places[0].add(self._thing(told[1]))
+                knowing = self._those(hit[1], self.had)
+                group = self._knowing({self.had, *knowing}, is_common=hit[1] == "Everybody else")
+                self._put(self.had, group)
+        elif hit := re.fullmatch(r"In (.*?) (?:was|were) (.*)", sentence):
+            if self._names_item(hit[2]):
+                self.places[0].add(self._thing(hit[1]))
         else:
             return False
         return True
@@ -94,25 +94,25 @@ class _Reader:
     def _sight(self, sentence: str) -> bool:
         """Read a sentence about who sees whom; False: it is none."""
         who = self._who
-        if told := re.fullmatch(r"All of them could see one another(.*)", sentence):
+        if match := re.fullmatch(r"All of them could see one another(.*)", sentence):
             for name in self.people:
-                self.sees[name] = {*self.people, *(self.things if told[1] else ())}
-        elif told := re.fullmatch(rf"At first ({who}) could see (.*)", sentence):
-            self.sees[told[1]] |= self._listed(told[2])
-        elif told := re.fullmatch(
+                self.sees[name] = {*self.people, *(self.things if match[1] else ())}
+        elif match := re.fullmatch(rf"At first ({who}) could see (.*)", sentence):
+            self.sees[match[1]] |= self._listed(match[2])
+        elif match := re.fullmatch(
             rf"({who}) could now see (.*?)(?:, and (.*) could see {who})?", sentence
         ):
-            self.sees[told[1]] |= self._listed(told[2])
-            for name in self._listed(told[3] or ""):
-                self.sees[name].add(told[1])
-        elif told := re.fullmatch(
+            self.sees[match[1]] |= self._listed(match[2])
+            for name in self._listed(match[3] or ""):
+                self.sees[name].add(match[1])
+        elif match := re.fullmatch(
             rf"({who}) could no longer see (.*?)(?:, nor could (.*) see {who})?", sentence
         ):
-            lost = self._listed(told[2])
-            lost |= set(self.things) if "any of the things there" in told[2] else set()
-            self.sees[told[1]] -= lost
-            for name in self._listed(told[3] or ""):
-                self.sees[name].discard(told[1])
+            lost = self._listed(match[2])
+            lost |= set(self.things) if "any of the things there" in match[2] else set()
+            self.sees[match[1]] -= lost
+            for name in self._listed(match[3] or ""):
+                self.sees[name].discard(match[1])
         else:
             return False
         return True
@@ -124,29 +124,29 @@ class _Reader:
             UnreadError: It is about the item and has an unknown form.
         """
         who = self._who
-        if told := re.fullmatch(
+        if match := re.fullmatch(
             rf"({who}) opened (.*?)(?: and (put|took) (.*) (?:into|out of) it)?", sentence
         ):
-            self.it = self._thing(told[2])
-            self._look(told[1], self.it)
-            if told[3] and self._names_item(told[4]):
-                self._move(told[1], told[3], self.it)
-        elif told := re.fullmatch(rf"({who}) (put|took) (.*) (?:into|out of) (.*)", sentence):
-            self.it = self.it if told[4] == "it" else self._thing(told[4])
-            self._look(told[1], self.it)
-            if self._names_item(told[3]):
-                self._move(told[1], told[2], self.it)
-        elif told := re.fullmatch(rf"({who}) gave (.*) to ({who})", sentence):
-            if self._names_item(told[2]):
+            self.it = self._thing(match[2])
+            self._look(match[1], self.it)
+            if match[3] and self._names_item(match[4]):
+                self._move(match[1], match[3], self.it)
+        elif match := re.fullmatch(rf"({who}) (put|took) (.*) (?:into|out of) (.*)", sentence):
+            self.it = self.it if match[4] == "it" else self._thing(match[4])
+            self._look(match[1], self.it)
+            if self._names_item(match[3]):
+                self._move(match[1], match[2], self.it)
+        elif match := re.fullmatch(rf"({who}) gave (.*) to ({who})", sentence):
+            if self._names_item(match[2]):
                 # An onlooker may see only one of the two.
-                for depth in self._witnesses({told[1]}):
-                    self.places[depth].discard(told[1])
-                self._put(told[3], self._witnesses({told[3]}))
-        elif told := re.fullmatch(rf"({who}) said: “(.*)”", sentence):
-            self._say(told[1], told[2])
-        elif told := re.fullmatch(r"(.*) heard it", sentence):
+                for depth in self._witnesses({match[1]}):
+                    self.places[depth].discard(match[1])
+                self._put(match[3], self._witnesses({match[3]}))
+        elif match := re.fullmatch(rf"({who}) said: “(.*)”", sentence):
+            self._say(match[1], match[2])
+        elif match := re.fullmatch(r"(.*) heard it", sentence):
             if self.said is not None:
-                heard = {self.said[0], *self._those(told[1], self.said[0])}
+                heard = {self.said[0], *self._those(match[1], self.said[0])}
                 self._hear(frozenset(heard), is_common=False)
         elif re.search(rf"(?<!\w){re.escape(self.item)}s?(?!\w)", sentence) and not re.search(
             # Whoever believes claims may believe those of whispers and signs.
@@ -246,8 +246,8 @@ class _Reader:
         return self._listed(words.removeprefix("Only "))
 
     def _listed(self, words: str) -> set[str]:
-        known = {*self.people, *self.things}
-        return {each for each in re.split(r", | and | or ", words) if each in known}
+        names = {*self.people, *self.things}
+        return {each for each in re.split(r", | and | or ", words) if each in names}
 
     def _thing(self, words: str) -> str:
         named = words[:1].lower() + words[1:]
@@ -294,14 +294,14 @@ class _Watcher(_Reader):
             if self.takes_up and re.search(r"\b(said|whispered to .*): “", sentence):
                 raise UnreadError(sentence)
             before = watching
-            known = self._beginning(sentence) or self._sight(sentence)
+            is_known = self._beginning(sentence) or self._sight(sentence)
             watching = set(self._watching())
-            if not known:
+            if not is_known:
                 self.fresh = set()
                 self._change(sentence, watching)
             for depth in self.fresh & before - watching:
                 self.seen[depth] = None
-            if known and not sentence.startswith(("At first", "All of them")):
+            if is_known and not sentence.startswith(("At first", "All of them")):
                 self.glimpsed |= watching - before
             for depth in watching:
                 self.seen[depth] = self.now
@@ -330,7 +330,7 @@ class _Watcher(_Reader):
         mention = rf"{thing}\b.*" if is_person else rf"(?:.*\W)?{thing}\b.*"
         if not re.fullmatch(mention, sentence) or (is_person and re.fullmatch(inert, sentence)):
             return
-        told = re.fullmatch(
+        match = re.fullmatch(
             rf"{thing} (?:stood at|stood near|walked to) (.*)"
             if is_person
             else rf"(?:On {thing} was written|{thing} now said|(?:{self._who}) wrote on {thing})"
@@ -338,7 +338,7 @@ class _Watcher(_Reader):
             sentence,
         )
         blank = rf"Nothing was written on {thing}|{self._who} wiped {thing} clean"
-        self.now = told[1] if told else "nothing" if re.fullmatch(blank, sentence) else None
+        self.now = match[1] if match else "nothing" if re.fullmatch(blank, sentence) else None
         # Not told is what the thing was like at a glimpse before, or what an act shows of it.
         actors = {name for name in self.people if sentence.startswith(f"{name} ")}
         unclear = self.glimpsed | set(self._depths(self._seeing(actors), is_common=False))

@@ -84,16 +84,16 @@ def ask_question(
 def _reply(question: Answers, options: tuple[str, ...], prompt: str, answer: Answer) -> Reply:
     if options:
         reading = read_answer(answer.text, options, answer.finish)
-        found = reading.option
+        chosen = reading.option
     else:
         reading = read_words(answer.text, answer.finish)
-        found = reading.said or None
+        chosen = reading.said or None
     return Reply(
         question=question.question,
         options=options,
         prompt=prompt,
         text=answer.text,
-        answer=found if reading.outcome == "read" else None,
+        answer=chosen if reading.outcome == "read" else None,
         reason=given_reason(answer.text),
         outcome=reading.row_outcome,
         why_not=reading.reason,

@@ -106,16 +106,16 @@ def read_lines(file: Path, form: type[T]) -> list[T]:
         raise InputError(f"{file} cannot be read: {error.strerror}") from None
     if last.endswith(b"}"):
         whole.append(last)
-    found = []
+    records = []
     for number, line in enumerate(whole, 1):
         # A process that is killed while it writes leaves a part of a line.
         if not line.endswith(b"}"):
             continue
         try:
-            found.append(decode_json(line, form))
+            records.append(decode_json(line, form))
         except msgspec.MsgspecError as error:
             raise InputError(f"{file}:{number} is damaged: {_plain(error)}; remove it") from None
-    return found
+    return records
 
 
 def _plain(error: Exception) -> str:

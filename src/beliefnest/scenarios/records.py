@@ -85,8 +85,8 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
 
 
 def _reply_json(reply: Reply) -> dict[str, object]:
-    told: dict[str, object] = msgspec.to_builtins(reply)
-    return {key: value for key, value in told.items() if key not in ("prompt", "text")}
+    entry: dict[str, object] = msgspec.to_builtins(reply)
+    return {key: value for key, value in entry.items() if key not in ("prompt", "text")}
 
 
 def _list(point: Point | None) -> list[float] | None:

@@ -116,8 +116,8 @@ def _other(probe: Probe, said: str, computed: str) -> ScenarioWarning:
 
 def _named(text: str) -> str:
     """Return `true belief` or `false belief` if a text names just one of them; else nothing."""
-    found = {each.lower() for each in _KIND.findall(text)}
-    return f"{found.pop()} belief" if len(found) == 1 else ""
+    kinds = {each.lower() for each in _KIND.findall(text)}
+    return f"{kinds.pop()} belief" if len(kinds) == 1 else ""
 
 
 def _kind_of(nest: Nest, probe: Probe, question: Answers) -> str:

@@ -123,15 +123,15 @@ def _faults_of_possible_goals(
     if entry.possible_goals and entry.goals_known:
         yield ("possible_goals",), "is of no use; set `goals_known: false`, or leave it out"
     for name, possible in entry.possible_goals.items():
-        given = ("possible_goals", name)
+        where = ("possible_goals", name)
         if name not in agents:
-            yield given, f"{quoted(name)} is none of the agents {_listed(agents)}"
+            yield where, f"{quoted(name)} is none of the agents {_listed(agents)}"
         elif not possible:
-            yield given, "is empty; name at least one goal"
+            yield where, "is empty; name at least one goal"
         elif any(goal.helps is not None for goal in possible.values()):
-            yield given, "has a goal that helps an agent; say what is to be reached instead"
+            yield where, "has a goal that helps an agent; say what is to be reached instead"
         elif entry.goals.get(name, entry.goal) not in possible.values():
-            yield given, f"lacks the goal that {name} has; write it among the others, word for word"
+            yield where, f"lacks the goal that {name} has; write it among the others, word for word"
 
 
 def _listed(agents: Collection[str]) -> str:
@@ -158,5 +158,5 @@ def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
             check_entry(condition, (), PlainScene(agents, box))
     for name in sorted(agents):
         if name in entry.players and name in entry.policies:
-            told = "is one of `players` and has a policy in `policies`; remove one of the two"
-            raise InputError(f"{name} {told}")
+            fault = "is one of `players` and has a policy in `policies`; remove one of the two"
+            raise InputError(f"{name} {fault}")

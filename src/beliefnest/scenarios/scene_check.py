@@ -35,7 +35,7 @@ def scene_warnings(
         snapshot: Its world before the script.
         probes: Its probes.
     """
-    found = [
+    faults = [
         *_names(file),
         *_walls(document, file, snapshot),
         *_gifts(file, snapshot),
@@ -44,7 +44,7 @@ def scene_warnings(
     ]
     return tuple(
         ScenarioWarning(f"{document.key_at(path)}{text}", f"{kind} {document.where(path)}")
-        for kind, path, text in found
+        for kind, path, text in faults
     )
 
 
@@ -190,7 +190,7 @@ def _copies(file: ScenarioFile, snapshot: Snapshot, probes: tuple[Probe, ...]) -
         }
         for item in sorted(asked):
             holders = [name for name, each in snapshot.agents.items() if each.inventory.get(item)]
-            holders += [str(list(at)) for at, held in snapshot.containers.items() if held.get(item)]
+            holders += [str(list(at)) for at, has in snapshot.containers.items() if has.get(item)]
             if len(holders) > 1:
                 yield (
                     "copies",

@@ -99,15 +99,15 @@ def build_sign_claims(
     box: Box,
 ) -> dict[Position, PlainClaims]:
     """Return the claims of signs by position, as plain data."""
-    found: dict[Position, PlainClaims] = {}
+    claims_by_place: dict[Position, PlainClaims] = {}
     for number, entry in enumerate(file.signs):
-        for index, told in enumerate(entry.claims):
+        for index, claimed in enumerate(entry.claims):
             path = ("signs", number, "claims", index)
             with document.naming(path):
-                claims = fact_in(told).claims
+                claims = fact_in(claimed).claims
                 for claim in claims:
                     claim.check(box, file.agents)
-            if not claims or told.path != "/":
+            if not claims or claimed.path != "/":
                 raise document.fault(
                     path,
                     "cannot be claimed; claim items or `lacks` of a container, or where an "
@@ -116,8 +116,8 @@ def build_sign_claims(
             if entry.at not in texts:
                 raise document.fault(path, "is for signs with a text; add `text`")
             plain = (claim.plain() for claim in claims)
-            found[entry.at] = (*found.get(entry.at, ()), *plain)
-    return found
+            claims_by_place[entry.at] = (*claims_by_place.get(entry.at, ()), *plain)
+    return claims_by_place
 
 
 def build_containers(
@@ -131,35 +131,35 @@ def build_containers(
 
     What is given for both halves of a double chest is added up.
     """
-    found: dict[Position, Items] = {}
-    given: set[Position] = set()
+    containers: dict[Position, Items] = {}
+    places_given: set[Position] = set()
     state_at = states_in(box, blocks, registry.air)
     for number, entry in enumerate(entries):
         path = ("containers", number)
-        if entry.at in given:
+        if entry.at in places_given:
             raise document.fault((*path, "at"), f"{list(entry.at)} has a container already")
-        given.add(entry.at)
+        places_given.add(entry.at)
         whole = container_at(registry, state_at, entry.at)
-        items = Counter(found.get(whole, {}))
+        items = Counter(containers.get(whole, {}))
         items.update(entry.items)
         name = registry.name(registry.state_id(entry.block))
         slots = slots_at(registry, state_at, whole)
         check_items(document, (*path, "items"), items, registry, slots, f"a {name}")
-        found[whole] = dict(items)
+        containers[whole] = dict(items)
     empty = [state for state in blocks.states if holds_items(registry, state)]
     x, y, z = box.low
     for i, j, k in blocks.find(empty).tolist() if empty else ():
-        found.setdefault((x + i, y + j, z + k), {})
-    return dict(sorted(found.items()))
+        containers.setdefault((x + i, y + j, z + k), {})
+    return dict(sorted(containers.items()))
 
 
 def parts_of(document: Document, path: KeyPath, entry: BlockEntry, box: Box) -> list[Box]:
     """Return the cuboids that an entry fills; no two of them overlap."""
-    given = [key for key in ("at", "fill", "walls") if getattr(entry, key) is not None]
-    if len(given) != 1:
-        found = " and ".join(given) or "none of them"
-        raise document.fault(path, f"give exactly one of 'at', 'fill' and 'walls'; found {found}")
-    key = given[0]
+    keys = [key for key in ("at", "fill", "walls") if getattr(entry, key) is not None]
+    if len(keys) != 1:
+        named = " and ".join(keys) or "none of them"
+        raise document.fault(path, f"give exactly one of 'at', 'fill' and 'walls'; found {named}")
+    key = keys[0]
     corners = (entry.at, entry.at) if entry.at is not None else (entry.fill or entry.walls)
     assert corners is not None  # one of the three is given
     for corner in corners:

@@ -90,10 +90,10 @@ class NamedFunction:
         Raises:
             InputError: The module or function does not exist.
         """
-        found = imported_object(f"{self.module}:{self.function}", "judging function")
-        if not callable(found):
+        function = imported_object(f"{self.module}:{self.function}", "judging function")
+        if not callable(function):
             raise InputError(f"{quoted(self.function)} in {quoted(self.module)} is no function")
-        return found
+        return function
 
 
 def function_of(written: object) -> tuple[Callable[[Trial], bool | str], str]:

@@ -162,8 +162,8 @@ def _standing(place: Snapshot, registry: Registry) -> tuple[float, float, float]
     states = place.blocks.states
     empty = [s for s in states if not registry.boxes(s)]
     floor = [s for s in states if registry.is_full(s)]
-    if found := _above_floor(place.blocks, floor, empty):
-        x, y, z = _at(place.box, found)
+    if above := _above_floor(place.blocks, floor, empty):
+        x, y, z = _at(place.box, above)
         return (x + 0.5, y + 1.0, z + 0.5)
     raise InputError(
         "there is no agent in the box, and no place for one; choose a box that contains a floor "

@@ -56,9 +56,9 @@ class Skill(msgspec.Struct, frozen=True):
     @property
     def parts(self) -> tuple[str, ...]:
         """Parts that a structured action of the skill has; empty if there is no such action."""
-        given = (each.action for each in self.parameters)
+        actions = (each.action for each in self.parameters)
         return tuple(
-            dict.fromkeys(part for parts in given if isinstance(parts, tuple) for part in parts)
+            dict.fromkeys(part for parts in actions if isinstance(parts, tuple) for part in parts)
         )
 
 

@@ -77,10 +77,10 @@ def plot_accuracy(
 def _not_answered(groups: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return the line of the caption about rows without an answer; empty: there are none."""
     counts = {name: sum(group.get(name) or 0 for group in groups) for name in LOST}
-    told = unanswered_words(counts)
-    if not told:
+    reasons = unanswered_words(counts)
+    if not reasons:
         return []
-    return [f"not answered, of {sum(group['judged'] for group in groups)}: {told}"]
+    return [f"not answered, of {sum(group['judged'] for group in groups)}: {reasons}"]
 
 
 def _draw_chance(
@@ -123,9 +123,9 @@ def with_short_names(groups: Sequence[Mapping[str, Any]]) -> list[Mapping[str, A
     """
     names = list(dict.fromkeys(group["model"] for group in groups if group.get("model")))
     short = {name: name.rpartition(":")[2].rstrip("/").rpartition("/")[2] for name in names}
-    known = {name: each for name, each in short.items() if list(short.values()).count(each) == 1}
+    clear = {name: each for name, each in short.items() if list(short.values()).count(each) == 1}
     return [
-        {**group, "model": known.get(group["model"], group["model"])} if "model" in group else group
+        {**group, "model": clear.get(group["model"], group["model"])} if "model" in group else group
         for group in groups
     ]
 

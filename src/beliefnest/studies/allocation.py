@@ -94,19 +94,19 @@ def _best_order(
     costs: Sequence[Sequence[_Cost]], allowed: Sequence[Collection[int]], chance: random.Random
 ) -> Sequence[int]:
     """Return a condition for each variation of a block, at the least sum of costs."""
-    found = [
+    orders = [
         order
         for order in _orders(len(costs[0]), len(costs), chance)
         if all(condition in each for condition, each in zip(order, allowed, strict=True))
     ]
-    if not found:
+    if not orders:
         # Some condition of the block is valid for none of its variations, or two need the same.
         pairs = zip(allowed, costs, strict=True)
         return [min(each, key=own.__getitem__) for each, own in pairs]
-    totals = [_total(costs, order) for order in found]
+    totals = [_total(costs, order) for order in orders]
     least = min(totals)
     return chance.choice(
-        [order for order, total in zip(found, totals, strict=True) if total == least]
+        [order for order, total in zip(orders, totals, strict=True) if total == least]
     )
 
 

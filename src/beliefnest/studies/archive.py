@@ -225,22 +225,22 @@ def damaged_files(folder: Path, kind: str) -> list[PairedDifference]:
         manifest = msgspec.convert(content, _Manifest)
     except msgspec.ValidationError as error:
         raise InputError(f"{file} is damaged: {error}; {remedy}") from None
-    found = []
+    damaged = []
     if manifest.form != _FORM or manifest.kind != kind:
         raise InputError(
             f"{file} is that of a {quoted(manifest.kind)} in the form {quoted(manifest.form)}, "
             f"and the folder holds a {kind} of the form {quoted(_FORM)}; {remedy}"
         )
-    for name, known in manifest.sha256.items():
+    for name, digest in manifest.sha256.items():
         path = inside(folder, name)
         there = hashlib.sha256(read_regular(path)).hexdigest() if path.is_file() else None
-        if there != known:
-            found.append(PairedDifference(name, HASH, known, there))
-    held = {
+        if there != digest:
+            damaged.append(PairedDifference(name, HASH, digest, there))
+    present = {
         path.relative_to(folder).as_posix()
         for name in _READ_BELOW
         for path in (folder / name).rglob("*")
         if path.is_file() and path.suffix != ".lock"
     }
-    added = sorted(held - manifest.sha256.keys())
-    return [*found, *(PairedDifference(name, ADDED, None, None) for name in added)]
+    added = sorted(present - manifest.sha256.keys())
+    return [*damaged, *(PairedDifference(name, ADDED, None, None) for name in added)]

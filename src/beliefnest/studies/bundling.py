@@ -122,8 +122,8 @@ def _readme(result: StudyRecord, facts: RunFacts, files: Mapping[str, bytes]) ->
             f"read them, and write `PYTHONPATH={PACKAGES}` before the command.\n"
         )
     contents = "\n".join(
-        f"| `{name}` | {told} |"
-        for name, told in _CONTENTS[kind].items()
+        f"| `{name}` | {content} |"
+        for name, content in _CONTENTS[kind].items()
         if any(file == name or file.startswith(name) for file in files)
     )
     return f"""# Supplement of a {kind}

@@ -52,11 +52,11 @@ def plan_cells(
                 "give the scenario conditions, or leave `design` out",
             )
         invalid += _unknown_conditions(design, name, document)
-        found: list[dict[int, list[Cell]]] = []
+        cells_by_variation: list[dict[int, list[Cell]]] = []
         variations = _variations(design, document)
         for done, variation in enumerate(variations):
             on_variation(done, len(variations))
-            found.append({})
+            cells_by_variation.append({})
             for number, condition in enumerate(conditions):
                 try:
                     scenario = _scenario(design, document, condition, variation)
@@ -65,8 +65,8 @@ def plan_cells(
                     invalid.append(Invalid(name, condition, variation.values, str(error)))
                     continue
                 check_called(called, scenario.name, name)
-                found[-1][number] = list(_cells(design, document, asked, variation))
-        allocated = _allocated(design, variations, found, len(conditions))
+                cells_by_variation[-1][number] = list(_cells(design, document, asked, variation))
+        allocated = _allocated(design, variations, cells_by_variation, len(conditions))
         label = design.labels.get(name, "")
         cells += [replace(cell, label=label) for cell in allocated]
     order = {model: number for number, model in enumerate(design.models)}
@@ -80,17 +80,17 @@ def _check_parameters(design: Design, documents: Mapping[str, Document]) -> None
     if isinstance(design.variations, int):
         return
     declared = {name for each in documents.values() for name in declared_in(each)}
-    known = (*sorted(declared), *CHANGES)
+    names = (*sorted(declared), *CHANGES)
     for name in design.variations:
-        if name not in known:
-            told = f"there is no parameter {quoted(name)}{nearest_or_all(name, known)}"
-            raise StudyKeyError(("variations", name), told)
+        if name not in names:
+            message = f"there is no parameter {quoted(name)}{nearest_or_all(name, names)}"
+            raise StudyKeyError(("variations", name), message)
 
 
 def _allocated(
     design: Design,
     variations: Sequence[Variation],
-    found: Sequence[Mapping[int, Sequence[Cell]]],
+    plans: Sequence[Mapping[int, Sequence[Cell]]],
     conditions: int,
 ) -> Iterator[Cell]:
     """Yield the cells of a scenario that belong to the design, with their lists.
@@ -98,21 +98,21 @@ def _allocated(
     Args:
         design: Design of the study.
         variations: Variations of the scenario.
-        found: Valid cells of each variation by the number of the condition, from 0.
+        plans: Valid cells of each variation by the number of the condition, from 0.
         conditions: Number of conditions.
     """
     if design.design == "crossed":
-        yield from (cell for each in found for cells in each.values() for cell in cells)
+        yield from (cell for each in plans for cells in each.values() for cell in cells)
     elif design.design == "balanced":
         values = [{k: json.dumps(v) for k, v in each.values.items()} for each in variations]
-        names = [cell.key.scenario for each in found for cells in each.values() for cell in cells]
+        names = [cell.key.scenario for each in plans for cells in each.values() for cell in cells]
         seed = f"{design.seed} {''.join(names[:1])}"
-        chosen = balanced(values, [list(each) for each in found], conditions, seed)
-        for each, condition in zip(found, chosen, strict=True):
+        chosen = balanced(values, [list(each) for each in plans], conditions, seed)
+        for each, condition in zip(plans, chosen, strict=True):
             yield from () if condition is None else each[condition]
     else:
         steps = _steps(design, variations)
-        for each, step in zip(found, steps, strict=True):
+        for each, step in zip(plans, steps, strict=True):
             lists = latin_lists(step, conditions)
             for condition, cells in each.items():
                 yield from (replace(cell, list_number=lists[condition]) for cell in cells)

@@ -90,9 +90,9 @@ class MovedBySymmetry:
         return self.placing.point(place)
 
     def _told(self, text: str) -> str:
-        if found := _DIRECTIONAL.search(text):
+        if match := _DIRECTIONAL.search(text):
             raise InputError(
-                f"says {quoted(found[0])}, which is another direction in a scene that is "
+                f"says {quoted(match[0])}, which is another direction in a scene that is "
                 f"{self._name}; name places by parameters"
             )
         return self._text(text)
@@ -180,14 +180,14 @@ class Renamed:
 
 def _spellings(names: Mapping[str, str], space: str) -> dict[str, str]:
     """Return new spellings by old ones: as written, capitalized, and items with spaces."""
-    found: dict[str, str] = {}
+    spellings: dict[str, str] = {}
     for old, new in names.items():
-        told = new.replace("_", space)
-        found[old] = new if "_" in old else told
+        spelling = new.replace("_", space)
+        spellings[old] = new if "_" in old else spelling
         for spelt in {old.replace("_", space), old}:
-            found.setdefault(spelt, told)
-            found[spelt[:1].upper() + spelt[1:]] = told[:1].upper() + told[1:]
-    return found
+            spellings.setdefault(spelt, spelling)
+            spellings[spelt[:1].upper() + spelt[1:]] = spelling[:1].upper() + spelling[1:]
+    return spellings
 
 
 def _with_article(article: str, word: str) -> str:

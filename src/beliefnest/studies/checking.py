@@ -34,13 +34,13 @@ def several(key: str, names: object) -> tuple[str, ...]:
     Raises:
         StudyKeyError: `names` is neither.
     """
-    found = [names] if isinstance(names, str | os.PathLike) else names
-    if isinstance(found, Sequence) and all(isinstance(each, str | os.PathLike) for each in found):
-        return tuple(map(os.fspath, found))
+    listed = [names] if isinstance(names, str | os.PathLike) else names
+    if isinstance(listed, Sequence) and all(isinstance(each, str | os.PathLike) for each in listed):
+        return tuple(map(os.fspath, listed))
     raise StudyKeyError(key, f"{key} is {quoted(names)}; give a name, or a list of names")
 
 
-def checked_columns(names: object, known: Sequence[str]) -> list[str]:
+def checked_columns(names: object, columns: Sequence[str]) -> list[str]:
     """Return one or several names of columns as a list.
 
     Raises:
@@ -49,8 +49,8 @@ def checked_columns(names: object, known: Sequence[str]) -> list[str]:
     """
     chosen = several("by", names)
     for name in chosen:
-        if name not in known:
-            raise InputError(f"there is no column {quoted(name)}{nearest_or_all(name, known)}")
+        if name not in columns:
+            raise InputError(f"there is no column {quoted(name)}{nearest_or_all(name, columns)}")
     return list(chosen)
 
 
@@ -63,11 +63,11 @@ def checked_conditions(conditions: object) -> tuple[int, ...] | None:
     """
     if conditions is None:
         return None
-    found = [conditions] if isinstance(conditions, int | str) else conditions
-    if not isinstance(found, Sequence) or not found:
-        told = f"conditions is {quoted(conditions)}; give numbers, or leave it out for all of them"
-        raise StudyKeyError("conditions", told)
-    numbers = tuple(number for each in found if (number := condition_number(each)) is not None)
+    named = [conditions] if isinstance(conditions, int | str) else conditions
+    if not isinstance(named, Sequence) or not named:
+        why = f"conditions is {quoted(conditions)}; give numbers, or leave it out for all of them"
+        raise StudyKeyError("conditions", why)
+    numbers = tuple(number for each in named if (number := condition_number(each)) is not None)
     check_once("conditions", numbers)
     return numbers
 
@@ -76,15 +76,15 @@ def check_once(key: str, values: Sequence[Any], what: str = "") -> None:
     """Raise StudyKeyError if a list contains a value twice."""
     twice = [value for value in values if values.count(value) > 1]
     if twice:
-        told = f"{what or key}: {quoted(twice[0])} is named twice; use repeats to do it again"
-        raise StudyKeyError(key, told)
+        message = f"{what or key}: {quoted(twice[0])} is named twice; use repeats to do it again"
+        raise StudyKeyError(key, message)
 
 
 def check_cells(key: str, cells: int) -> None:
     """Raise StudyKeyError if a scenario or task would have too many cells under a condition."""
     if cells > _MOST_CELLS:
-        told = f"there would be more than {_MOST_CELLS:,} cells; make several studies"
-        raise StudyKeyError(key, told)
+        message = f"there would be more than {_MOST_CELLS:,} cells; make several studies"
+        raise StudyKeyError(key, message)
 
 
 def check_count(key: str, number: object) -> None:
@@ -145,11 +145,11 @@ def checked_lists(variations: Mapping[str, Sequence[Any]]) -> None:
             )
         for value in values:
             if not _is_plain(value):
-                told = (
+                message = (
                     f"variations of {quoted(name)} have {quoted(value)}; give texts, finite "
                     "numbers, and "
                 )
-                raise StudyKeyError(("variations", name), f"{told}lists and mappings of them")
+                raise StudyKeyError(("variations", name), f"{message}lists and mappings of them")
         check_once("variations", [json.dumps(v) for v in values], f"variations of {quoted(name)}")
 
 

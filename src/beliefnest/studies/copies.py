@@ -33,12 +33,12 @@ def rows_with_copies(
     rows: list[dict[str, Any]] = []
     alike: dict[str, dict[str, str]] = {}
     for cell in plan["cells"]:
-        found = folder.cell(cell["name"])
-        if found is None:
+        content = folder.cell(cell["name"])
+        if content is None:
             continue
-        if cell["alike"] is not None and found["error"] is None:
-            alike.setdefault(cell["alike"], {})[cell["name"]] = _what_came(found)
-        rows += rows_of(cell, found)
+        if cell["alike"] is not None and content["error"] is None:
+            alike.setdefault(cell["alike"], {})[cell["name"]] = _what_came(content)
+        rows += rows_of(cell, content)
     first_of = {
         name: next(iter(results))
         for results in alike.values()
@@ -57,9 +57,9 @@ def text_of_copies(count: int) -> str:
     )
 
 
-def _what_came(found: Mapping[str, Any]) -> str:
-    told = {name: value for name, value in found.items() if name not in _OWN}
-    if "measures" in told:
+def _what_came(content: Mapping[str, Any]) -> str:
+    compared = {name: value for name, value in content.items() if name not in _OWN}
+    if "measures" in compared:
         seeds = ("seed", "task_seed")
-        told["measures"] = {k: v for k, v in told["measures"].items() if k not in seeds}
-    return digest(told)
+        compared["measures"] = {k: v for k, v in compared["measures"].items() if k not in seeds}
+    return digest(compared)

@@ -140,15 +140,15 @@ def _people(*rows: Row) -> frozenset[object]:
 
 
 def _means(rows: Mapping[_Origin, Row], means: Mapping[str, bool]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    columns: dict[str, Any] = {}
     for name, of_right in means.items():
         chosen = {key: row for key, row in rows.items() if row.get("ok") or not of_right}
         clusters = _clusters(chosen, name)
         low, high = mean_interval(clusters)
         count = sum(map(len, clusters))
         mean = sum(map(sum, clusters)) / count if clusters else None
-        found |= {name: mean, f"{name}_low": low, f"{name}_high": high}
-    return found
+        columns |= {name: mean, f"{name}_low": low, f"{name}_high": high}
+    return columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,16 +278,16 @@ def paired_rows(
 def _pairs(
     table: Iterable[Mapping[Any, Sequence[tuple[Row, _Origin]]]], one: Any, other: Any
 ) -> Pairs:
-    found: dict[tuple[_Origin, _Origin], tuple[Row, Row]] = {}
+    rows_of_pair: dict[tuple[_Origin, _Origin], tuple[Row, Row]] = {}
     for each in table:
         # Several rows differ by participant only.
         for (first, a), (second, b) in itertools.product(each.get(one, ()), each.get(other, ())):
             # A row does not form a pair with its own copy.
             if a != b:
-                found[a, b] = (first, second)
+                rows_of_pair[a, b] = (first, second)
     clusters: dict[tuple[object, object], list[tuple[bool, bool]]] = {}
     people: dict[tuple[object, object], list[frozenset[object]]] = {}
-    for (a, b), (first, second) in found.items():
+    for (a, b), (first, second) in rows_of_pair.items():
         # If the column is part of the variation, the two rows belong to two variations.
         cluster = _variation(first, a), _variation(second, b)
         clusters.setdefault(cluster, []).append((first["ok"], second["ok"]))

@@ -89,8 +89,8 @@ class Design:
         check_count("repeats", self.repeats)
         check_count("attempts", self.attempts)
         if self.temperature is not None and not is_amount(self.temperature):
-            told = f"temperature is {quoted(self.temperature)}; give a number, at least 0, or None"
-            raise StudyKeyError("temperature", told)
+            why = f"temperature is {quoted(self.temperature)}; give a number, at least 0, or None"
+            raise StudyKeyError("temperature", why)
         for name, text in (("world", self.world), ("claims_from", self.claims_from or "")):
             if not isinstance(text, str):
                 raise StudyKeyError(name, f"{name} is {quoted(text)}; give a name")
@@ -98,8 +98,8 @@ class Design:
             raise StudyKeyError("seed", f"seed is {quoted(self.seed)}; it must be a whole number")
         check_world(self.world, servers=False)
         self._check_variations()
-        given = self.variations
-        lists = [given] if isinstance(given, int) else [len(each) for each in given.values()]
+        draws = self.variations
+        lists = [draws] if isinstance(draws, int) else [len(each) for each in draws.values()]
         check_cells("variations", math.prod(lists))
         check_cells("repeats", self.repeats * len(self.models) * math.prod(lists))
 
@@ -164,20 +164,20 @@ class Design:
         defaults = {name: entry.default for name, entry in declared.items()}
         values = {**dict.fromkeys(CHANGES), **defaults, **variation.values}
         for constraint in self.constraints:
-            told = getattr(constraint, "__name__", str(constraint))
-            if not _holds(constraint, told, values):
-                return ScenarioError(f"the constraint {quoted(told)} does not hold")
+            constraint_text = getattr(constraint, "__name__", str(constraint))
+            if not _holds(constraint, constraint_text, values):
+                return ScenarioError(f"the constraint {quoted(constraint_text)} does not hold")
         return None
 
 
-def _holds(constraint: Constraint, told: str, values: Mapping[str, Any]) -> bool:
+def _holds(constraint: Constraint, constraint_text: str, values: Mapping[str, Any]) -> bool:
     if isinstance(constraint, str):
         return bool(evaluate(constraint, values))
     try:
         return bool(constraint(values))
     except Exception as error:  # a user's function may raise anything; report it
         raise InputError(
-            f"the constraint {quoted(told)} raised {type(error).__name__}: {error}"
+            f"the constraint {quoted(constraint_text)} raised {type(error).__name__}: {error}"
         ) from error
 
 

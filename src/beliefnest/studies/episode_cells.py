@@ -176,7 +176,7 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
     texts = {
         player.text: [text_of_policy(name) for name in _names(player)] for player in design.players
     }
-    found: list[EpisodeCell | Invalid] = []
+    planned: list[EpisodeCell | Invalid] = []
     called: dict[str, str] = {}
     for name in design.tasks:
         document = Task.scenario_document(name)
@@ -192,14 +192,14 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
             except MissingExtraError:
                 raise
             except BeliefNestError as error:
-                found.append(place.invalid(str(error)))
+                planned.append(place.invalid(str(error)))
                 continue
             check_called(called, tasks[design.seeds[0]].name, name)
-            found += _cells(design, place, tasks, texts)
-    cells = [each for each in found if isinstance(each, EpisodeCell)]
+            planned += _cells(design, place, tasks, texts)
+    cells = [each for each in planned if isinstance(each, EpisodeCell)]
     seeds = {seed: number for number, seed in enumerate(design.seeds)}
     cells.sort(key=lambda cell: (cell.key.repeat, seeds[cell.key.instance]))
-    return Plan(tuple(cells), tuple(each for each in found if isinstance(each, Invalid)))
+    return Plan(tuple(cells), tuple(each for each in planned if isinstance(each, Invalid)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,15 +7,15 @@ from beliefnest.studies.episode_design import policy_named
 from beliefnest.studies.table import Column, ColumnType, Table, lost, of_key, of_result, plain_value
 
 
-def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+def _results(cell: Mapping[str, Any], content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """Yield the measures of the episode, or the reason why there are none."""
-    if found["error"] is not None:
-        failed = lost(found, is_judged=True)
+    if content["error"] is not None:
+        failed = lost(content, is_judged=True)
         yield {**failed, "success": failed["ok"]}
         return
-    ok = found["measures"]["success"]
-    told = {"outcome": "ok" if ok else "wrong", "why_not": found["why_not"]}
-    yield {**found["measures"], **told}
+    ok = content["measures"]["success"]
+    judged = {"outcome": "ok" if ok else "wrong", "why_not": content["why_not"]}
+    yield {**content["measures"], **judged}
 
 
 def _measure(name: str, kind: ColumnType = "int64", *, shown: bool = False) -> Column:

@@ -62,13 +62,13 @@ def read_design(
 def _beside(keys: StudyKeys, folder: Path) -> StudyKeys:
     """Return the keys with the paths of files in them, which are relative to the file's folder."""
 
-    def located(place: KeyPath, name: str, known: Sequence[str]) -> str:
+    def located(place: KeyPath, name: str, candidates: Sequence[str]) -> str:
         file = folder / name
-        if name in known:
+        if name in candidates:
             return name
         if not file.exists():
-            told = nearest_or_all(name, known, "built in are")
-            raise StudyKeyError(place, f"there is no file {file}{told}")
+            hint = nearest_or_all(name, candidates, "built in are")
+            raise StudyKeyError(place, f"there is no file {file}{hint}")
         return str(file)
 
     scenarios: list[str | Mapping[str, Any]] = []
@@ -82,13 +82,13 @@ def _beside(keys: StudyKeys, folder: Path) -> StudyKeys:
             scenarios.append({"label": label, "scenarios": own})
         else:
             scenarios += [located(place, name, builtin_names()) for name in names]
-    known = (*Task.names(), *builtin_names())
+    candidates = (*Task.names(), *builtin_names())
     tasks = None if keys.tasks is None else several("tasks", keys.tasks)
     return replace(
         keys,
         scenarios=scenarios,
         system=None if keys.system is None else str(folder / keys.system),
-        tasks=tasks and [located(("tasks", n), name, known) for n, name in enumerate(tasks)],
+        tasks=tasks and [located(("tasks", n), name, candidates) for n, name in enumerate(tasks)],
         policies=tuple(_policies_beside(each, folder) for each in listed(keys.policies)),
     )
 

@@ -28,8 +28,8 @@ def rows_fault(rows: Sequence[Row], names: Sequence[str]) -> str:
     if not rows:
         return "no row is judged"
     if len({bool(row["ok"]) for row in rows}) == 1:
-        told = "right" if rows[0]["ok"] else "wrong"
-        return f"all {len(rows)} judged rows are {told}, so that there is nothing to explain"
+        side = "right" if rows[0]["ok"] else "wrong"
+        return f"all {len(rows)} judged rows are {side}, so that there is nothing to explain"
     for name in names:
         levels = {level_of(row, name) for row in rows}
         if len(levels) == 1:
@@ -57,10 +57,10 @@ def support_fault(
     if total < FEWEST:
         return f"the judged rows have {counted(total, 'variation')}; at least {FEWEST} are needed"
     for names, values, own in _cells(rows, effects):
-        found = len({rows[number]["variation"] for number in own})
-        if found < FEWEST:
+        variations = len({rows[number]["variation"] for number in own})
+        if variations < FEWEST:
             return (
-                f"{_told(names, values)} has judged rows of {counted(found, 'variation')}; an "
+                f"{_told(names, values)} has judged rows of {counted(variations, 'variation')}; an "
                 f"error between variations needs at least {FEWEST}"
             )
     whole = design.T @ design
@@ -100,11 +100,11 @@ def separation_fault(
     if not endless:
         return ""
     for names, values, own in _cells(rows, effects):
-        found = {float(right[number]) for number in own}
-        if len(found) == 1:
-            told = "right" if found == {1.0} else "wrong"
+        sides = {float(right[number]) for number in own}
+        if len(sides) == 1:
+            side = "right" if sides == {1.0} else "wrong"
             return (
-                f"all {counted(len(own), 'row')} with {_told(names, values)} are {told} "
+                f"all {counted(len(own), 'row')} with {_told(names, values)} are {side} "
                 "(separation), so that its log odds have no finite estimate"
             )
     return (
@@ -127,13 +127,13 @@ def _endless(right: Floats, design: Floats) -> list[int]:
     limits = {"A_ub": -sides[~both], "b_ub": np.zeros((~both).sum()), "bounds": (-1, 1)}
     if linprog(-sides[~both].sum(axis=0), **limits, **equal).fun > -1e-7:
         return []
-    found = []
+    endless = []
     for number in range(design.shape[1]):
         aim = np.zeros(design.shape[1])
         aim[number] = 1.0
         if any(linprog(sign * aim, **limits, **equal).fun < -1e-7 for sign in (1, -1)):
-            found.append(number)
-    return found
+            endless.append(number)
+    return endless
 
 
 def _cells(

@@ -66,17 +66,17 @@ class Fit:
 
     @classmethod
     def wald(
-        cls, estimates: Any, errors: Any, correlation: float, told: str = "", raw: Any = None
+        cls, estimates: Any, errors: Any, correlation: float, how: str = "", raw: Any = None
     ) -> "Fit":
         """Return a fit with z tests; a failed one if some error is zero or not finite."""
-        found, own = np.asarray(estimates, dtype=float), np.asarray(errors, dtype=float)
-        if not np.isfinite([*found, *own]).all():
+        coefficients, own = np.asarray(estimates, dtype=float), np.asarray(errors, dtype=float)
+        if not np.isfinite([*coefficients, *own]).all():
             return cls.failed("the estimates are not finite")
         if (own < 1e-7).any():
             return cls.failed("the answers do not vary between variations")
-        tests = np.array([math.erfc(abs(z) / math.sqrt(2)) for z in found / own])
-        low, high = found - Z95 * own, found + Z95 * own
-        return cls(found, own, low, high, tests, correlation, told, raw=raw)
+        tests = np.array([math.erfc(abs(z) / math.sqrt(2)) for z in coefficients / own])
+        low, high = coefficients - Z95 * own, coefficients + Z95 * own
+        return cls(coefficients, own, low, high, tests, correlation, how, raw=raw)
 
 
 def gee(right: Floats, design: Floats, groups: Any, family: Family) -> Fit:
@@ -104,8 +104,8 @@ def gee(right: Floats, design: Floats, groups: Any, family: Family) -> Fit:
         if result.converged and least > 1e-3 and _bounded(result.params, family):
             # Rounding can make a variance of 0 negative.
             errors = np.sqrt(np.maximum(np.diag(result.cov_robust_bc), 0.0))
-            told = f"{name} working correlation"
-            return Fit.wald(result.params, errors, shared, told, result)
+            how = f"{name} working correlation"
+            return Fit.wald(result.params, errors, shared, how, result)
     return Fit.failed("the generalized estimating equations do not converge")
 
 
@@ -147,32 +147,32 @@ def _linear_mixed(right: Floats, design: Floats, groups: Any) -> Fit:
         weights = ratio / (1 + sizes * ratio)
         matrix = design.T @ design - (sums.T * weights) @ sums
         vector = design.T @ right - (sums.T * weights) @ totals
-        found = np.asarray(np.linalg.solve(matrix, vector), dtype=np.float64)
-        rest = max(float(right @ right - weights @ totals**2 - vector @ found), 0.0)
+        fixed = np.asarray(np.linalg.solve(matrix, vector), dtype=np.float64)
+        rest = max(float(right @ right - weights @ totals**2 - vector @ fixed), 0.0)
         variance = rest / (count - terms)
         deviance = (
             (count - terms) * math.log(max(variance, 1e-300))
             + float(np.log1p(sizes * ratio).sum())
             + float(np.linalg.slogdet(matrix)[1])
         )
-        return deviance, found, variance, matrix
+        return deviance, fixed, variance, matrix
 
     if count - terms < 1:
         return Fit.failed("there are no more rows than coefficients")
     grid = np.linspace(0, 0.999, 60)
     best = int(np.argmin([solved(float(each))[0] for each in grid]))
     bounds = (float(grid[max(0, best - 1)]), float(grid[min(len(grid) - 1, best + 1)]))
-    found = minimize_scalar(
+    fixed = minimize_scalar(
         lambda share: solved(share)[0], bounds=bounds, method="bounded", options={"xatol": 1e-9}
     )
-    deviance, estimates, variance, matrix = solved(float(found.x))
-    if variance < 1e-10 or found.x > 0.998:
+    deviance, estimates, variance, matrix = solved(float(fixed.x))
+    if variance < 1e-10 or fixed.x > 0.998:
         return Fit.failed("the answers do not vary within variations")
     if solved(0.0)[0] - deviance < 1e-6:
         return Fit.failed(_BOUNDARY)
     errors = np.sqrt(variance * np.diag(np.linalg.inv(matrix)))
-    spread = math.sqrt(variance * found.x / (1 - found.x))
-    return Fit.wald(estimates, errors, spread, raw=found)
+    spread = math.sqrt(variance * fixed.x / (1 - fixed.x))
+    return Fit.wald(estimates, errors, spread, raw=fixed)
 
 
 def _logistic_mixed(right: Floats, design: Floats, groups: Any) -> Fit:
@@ -362,16 +362,14 @@ class _Penalised:
         def beyond(value: float) -> float:
             return self._distance(best, number, value) - _CHI95
 
-        found = []
+        ends = []
         for side in (-1.0, 1.0):
             inside, outside = float(best[number]), float(best[number]) + side * 2 * error
             while beyond(outside) < 0 and abs(outside) < 2 * _FARTHEST:
                 inside, outside = outside, outside + side * 2 * error
             is_within = beyond(outside) < 0
-            found.append(
-                outside if is_within else float(brentq(beyond, inside, outside, xtol=1e-7))
-            )
-        return found[0], found[1]
+            ends.append(outside if is_within else float(brentq(beyond, inside, outside, xtol=1e-7)))
+        return ends[0], ends[1]
 
 
 def bootstrap(right: Floats, design: Floats, groups: Any) -> Fit:
@@ -392,14 +390,14 @@ def bootstrap(right: Floats, design: Floats, groups: Any) -> Fit:
     full = np.linalg.matrix_rank(all_matrices, hermitian=True) == terms
     if full.mean() < 0.95:
         return Fit.failed("too many draws of variations lack a level")
-    found = np.linalg.solve(all_matrices[full], (drawn[full] @ vectors)[:, :, None])[:, :, 0]
+    solutions = np.linalg.solve(all_matrices[full], (drawn[full] @ vectors)[:, :, None])[:, :, 0]
     best = np.linalg.solve(matrices.sum(axis=0), vectors.sum(axis=0))
-    low, high = np.percentile(found, [2.5, 97.5], axis=0)
+    low, high = np.percentile(solutions, [2.5, 97.5], axis=0)
     # A draw without an effect is 0 on either side, whatever its rounding.
-    below = (1 + (found <= _ROUNDING).sum(axis=0)) / (1 + len(found))
-    above = (1 + (found >= -_ROUNDING).sum(axis=0)) / (1 + len(found))
+    below = (1 + (solutions <= _ROUNDING).sum(axis=0)) / (1 + len(solutions))
+    above = (1 + (solutions >= -_ROUNDING).sum(axis=0)) / (1 + len(solutions))
     tests = np.minimum(1.0, 2 * np.minimum(below, above))
-    return Fit(best, found.std(axis=0, ddof=1), low, high, tests)
+    return Fit(best, solutions.std(axis=0, ddof=1), low, high, tests)
 
 
 def statsmodels() -> Any:

@@ -69,9 +69,9 @@ def check_trust(codes: Iterable[Code], *, trust: bool) -> None:
     Raises:
         InputError: There is code, and `trust` is False; the message lists it.
     """
-    found = sorted({code.text for code in codes})
-    if found and not trust:
+    texts = sorted({code.text for code in codes})
+    if texts and not trust:
         raise InputError(
-            f"playing this again would run Python code of its makers: {'; '.join(found)}. Read it, "
+            f"playing this again would run Python code of its makers: {'; '.join(texts)}. Read it, "
             "and run it with --trust (trust=True in Python); nothing was run"
         )

@@ -25,6 +25,6 @@ def chance_of(expected: Mapping[str, Any] | None) -> float | None:
 
 def mean_chance(rows: Sequence[Mapping[str, Any]]) -> float | None:
     """Return the mean chance level of rows; None if one has none."""
-    found = [row.get("chance") for row in rows]
-    known = [each for each in found if each is not None]
-    return sum(known) / len(known) if known and len(known) == len(found) else None
+    rates = [row.get("chance") for row in rows]
+    valid = [each for each in rates if each is not None]
+    return sum(valid) / len(valid) if valid and len(valid) == len(rates) else None

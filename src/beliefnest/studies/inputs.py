@@ -152,11 +152,11 @@ def _candidates(folder: str, name: PurePosixPath) -> Iterator[str]:
 
 def _templates_of(document: Document) -> dict[str, str]:
     """Return the texts of the templates that a scenario names under any condition."""
-    found: dict[str, str] = {}
+    templates: dict[str, str] = {}
     for condition in condition_numbers(document):
         try:
-            found.update(Scenario.varied(document, condition).templates)
+            templates.update(Scenario.varied(document, condition).templates)
         except BeliefNestError:
             # A task is no scenario and names no templates.
             continue
-    return found
+    return templates

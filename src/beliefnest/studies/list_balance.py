@@ -137,11 +137,11 @@ def with_balanced_lists(plan: Plan[Cell]) -> Plan[Cell]:
 
 def _by_scenario(cells: Sequence[Cell]) -> dict[str, list[Cell]]:
     """Return one cell for each variation and condition, by scenario."""
-    found: dict[str, dict[tuple[str, str, int | None], Cell]] = {}
+    cells_by_place: dict[str, dict[tuple[str, str, int | None], Cell]] = {}
     for cell in cells:
         if cell.list_number is not None:
-            found.setdefault(cell.key.scenario, {}).setdefault(_place(cell), cell)
-    return {name: list(each.values()) for name, each in found.items()}
+            cells_by_place.setdefault(cell.key.scenario, {}).setdefault(_place(cell), cell)
+    return {name: list(each.values()) for name, each in cells_by_place.items()}
 
 
 def _place(cell: Cell) -> tuple[str, str, int | None]:
@@ -153,10 +153,10 @@ def _square(cells: Sequence[Cell], worlds: Worlds) -> _Square:
     lists: dict[str, dict[int | None, int]] = defaultdict(dict)
     for cell in cells:
         _, variation, condition = _place(cell)
-        found = _facts(cell.scenario, cell.key.seed, worlds)
+        facts_of_cell = _facts(cell.scenario, cell.key.seed, worlds)
         # Under each condition answers are balanced as well, as far as they can be.
-        under = {(*fact, str(condition)): count for fact, count in found.items()}
-        facts[variation][condition] = found + Counter(under)
+        under = {(*fact, str(condition)): count for fact, count in facts_of_cell.items()}
+        facts[variation][condition] = facts_of_cell + Counter(under)
         lists[variation][condition] = cell.list_number or 0
     return _Square(facts, lists)
 
@@ -166,9 +166,9 @@ def _facts(scenario: Scenario, seed: int, worlds: Worlds) -> Counter[_Fact]:
 
     The script is played in the scripted world, in which all of it takes milliseconds.
     """
-    found: Counter[_Fact] = Counter()
+    counts: Counter[_Fact] = Counter()
     if not any(question.options for probe in scenario.probes for question in probe.questions):
-        return found
+        return counts
     with Nest.open(scenario, "scripted", None, seed, worlds) as nest:
         nest.play()
         for number, probe in enumerate(scenario.probes, start=1):
@@ -176,17 +176,17 @@ def _facts(scenario: Scenario, seed: int, worlds: Worlds) -> Counter[_Fact]:
                 shown = shuffled(question, seed)
                 for option in set(question.right) & set(shown):
                     name = probe.label or f"probe {number}"
-                    found[name, _RIGHT, option] += 1
-                    found[name, "its position", str(shown.index(option) + 1)] += 1
-    return found
+                    counts[name, _RIGHT, option] += 1
+                    counts[name, "its position", str(shown.index(option) + 1)] += 1
+    return counts
 
 
 def _table(counts: Mapping[_Counted, int]) -> str:
     """Return the counts of right answers that differ by more than one between lists."""
     numbers = sorted({number for number, _ in counts})
-    told = sorted({fact for _, fact in counts if fact[1] == _RIGHT and len(fact) == _WHOLE})
+    rights = sorted({fact for _, fact in counts if fact[1] == _RIGHT and len(fact) == _WHOLE})
     rows = []
-    for fact in told:
+    for fact in rights:
         row = [counts.get((number, fact), 0) for number in numbers]
         if max(row) - min(row) > 1:
             rows.append(f"{fact[0]}, {fact[2]}: {' '.join(map(str, row))}")

@@ -121,13 +121,13 @@ class RunFacts:
 
 def answered(names: Sequence[str], exchanges: Sequence[Exchange]) -> list[ModelFacts]:
     """Return the facts about each model, from its recorded answers."""
-    found = []
+    models = []
     for name in dict.fromkeys(names):
         own = [each for each in exchanges if each.model == name]
         dates = sorted(each.date for each in own if each.date)
         span = (dates[0], dates[-1]) if dates else None
-        found.append(ModelFacts(name, len(own), span, len(own) - len(dates)))
-    return found
+        models.append(ModelFacts(name, len(own), span, len(own) - len(dates)))
+    return models
 
 
 def usage_of(rows: Sequence[Row]) -> tuple[int, float, int]:
@@ -187,8 +187,8 @@ def _people(result: StudyRecord) -> Iterator[PeopleFacts]:
         if PARTICIPANT in cell["key"]:
             cells.setdefault(cell["key"]["model"], []).append(cell)
     for name, own in cells.items():
-        found = [result.folder.cell(cell["name"]) or {} for cell in own]
-        pages = [each.get("page") or {} for each in found]
+        contents = [result.folder.cell(cell["name"]) or {} for cell in own]
+        pages = [each.get("page") or {} for each in contents]
         days = sorted(str(page["started"])[:10] for page in pages if page.get("started"))
         yield PeopleFacts(
             name=name,
@@ -202,8 +202,8 @@ def _people(result: StudyRecord) -> Iterator[PeopleFacts]:
 
 def _not_answered(rows: Sequence[Row]) -> dict[str, int]:
     """Return the number of rows without an answer or a result, by outcome."""
-    found = {name: sum(row["outcome"] == name for row in rows) for name in LOST}
-    return {name: count for name, count in found.items() if count}
+    counts = {name: sum(row["outcome"] == name for row in rows) for name in LOST}
+    return {name: count for name, count in counts.items() if count}
 
 
 def _rounds_not_answered(rows: Sequence[Row]) -> dict[str, int]:
@@ -221,7 +221,7 @@ def _computed(rows: Sequence[Row]) -> int:
 def _intervals(groups: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return the methods of the intervals of counted groups, in words."""
     used = {group["interval"] for group in groups}
-    return [told for name, told in _INTERVALS.items() if name in used]
+    return [words for name, words in _INTERVALS.items() if name in used]
 
 
 _INTERVALS = {
@@ -240,16 +240,16 @@ def _subjects(plan: Mapping[str, Any]) -> str:
     keys = [cell["key"] for cell in plan["cells"]]
     names = list(dict.fromkeys(key["scenario"] for key in keys))
     numbers = sorted({key["condition"] for key in keys if key["condition"] is not None})
-    told = f"the {_several('scenario', names)}"
-    return f"{told} under {_several('condition', numbers, '')}" if numbers else told
+    subjects = f"the {_several('scenario', names)}"
+    return f"{subjects} under {_several('condition', numbers, '')}" if numbers else subjects
 
 
 def _factors(plan: Mapping[str, Any]) -> Iterator[str]:
     variations = plan["variations"]
     if isinstance(variations, int):
-        told = f"{counted(variations, 'drawn variation')} of each scenario"
+        factor = f"{counted(variations, 'drawn variation')} of each scenario"
         varied = _varied(plan)
-        yield f"{told} (in {_listed(varied)})" if varied else told
+        yield f"{factor} (in {_listed(varied)})" if varied else factor
     elif variations:
         lists = [f"{_code(n)} ({counted(len(v), 'value')})" for n, v in variations.items()]
         yield f"all valid combinations of {_listed(lists)}"
@@ -280,8 +280,8 @@ def _asking(plan: Mapping[str, Any], rows: Sequence[Row]) -> str:
     if "attempts" not in plan:
         return ""
     heat = plan["temperature"]
-    told = "the provider's default temperature" if heat is None else f"temperature {heat:g}"
-    parts = [f"at {told}"]
+    heat_words = "the provider's default temperature" if heat is None else f"temperature {heat:g}"
+    parts = [f"at {heat_words}"]
     if any(row.get("attempts", 1) for row in rows):
         parts.append(f"with at most {counted(plan['attempts'], 'request')} for a program")
     if "retry_unread" in plan:
@@ -301,26 +301,26 @@ def _asking(plan: Mapping[str, Any], rows: Sequence[Row]) -> str:
 
 
 def _templates(result: StudyRecord) -> dict[str, str | None]:
-    found: dict[str, str | None] = {}
+    digests: dict[str, str | None] = {}
     for name in result.plan.get("templates", []):
-        found[name] = None
+        digests[name] = None
         if name not in BUILT_IN_TEMPLATES:
             text = read_regular(result.folder.path / result.plan["inputs"]["templates"][name])
-            found[name] = hashlib.sha256(text).hexdigest()[:12]
-    return found
+            digests[name] = hashlib.sha256(text).hexdigest()[:12]
+    return digests
 
 
 def _excluded(result: StudyRecord) -> dict[str, int]:
     """Return what is not among the judged rows, in words, with counts."""
     plan, rows = result.plan, result.rows
     tried = {row["cell"] for row in rows}
-    found = {
+    counts = {
         "combination": len(plan["invalid"]),
         "unplayed": sum(cell["name"] not in tried for cell in plan["cells"]),
         "unjudged": sum(row["ok"] is None for row in rows),
         "copy": sum(row["copy_of"] is not None and row["ok"] is not None for row in rows),
     }
-    return {name: count for name, count in found.items() if count}
+    return {name: count for name, count in counts.items() if count}
 
 
 _EXCLUDED = {
@@ -363,11 +363,11 @@ def _sentences(facts: RunFacts) -> Iterator[str]:
     if facts.asking and any(can_vary(each.name) for each in facts.models):
         yield f"Models were asked {facts.asking}."
     if facts.templates:
-        told = [
+        prompt_words = [
             f"{_code(name)} ({'built in' if text is None else f'SHA-256 {text}'})"
             for name, text in facts.templates.items()
         ]
-        yield f"Prompts were rendered with {_listed(told)}."
+        yield f"Prompts were rendered with {_listed(prompt_words)}."
     if facts.tokens or facts.cost or facts.unpriced:
         cost = f"cost {facts.cost:.2f} US dollars"
         if facts.unpriced:
@@ -402,10 +402,10 @@ def _sentences(facts: RunFacts) -> Iterator[str]:
 def _exclusions(facts: RunFacts) -> Iterator[str]:
     """Yield the sentences about what was excluded."""
     reasons = [each.sessions.get("excluded") for each in facts.people]
-    told = [excluded_words(each) for each in reasons if each]
-    told += [_exclusion(name, count) for name, count in facts.excluded.items()]
-    if told:
-        yield f"Excluded were {_listed(told)}."
+    reasons_words = [excluded_words(each) for each in reasons if each]
+    reasons_words += [_exclusion(name, count) for name, count in facts.excluded.items()]
+    if reasons_words:
+        yield f"Excluded were {_listed(reasons_words)}."
     elif not facts.people:
         yield "Nothing was excluded."
     if facts.people:
@@ -416,12 +416,12 @@ def _exclusions(facts: RunFacts) -> Iterator[str]:
 
 
 def _exclusion(name: str, count: int) -> str:
-    told = _EXCLUDED[name].format(counted(count, _NOUNS[name]))
+    words = _EXCLUDED[name].format(counted(count, _NOUNS[name]))
     if count == 1:
-        return told
+        return words
     for one, many in ((" makes ", " make "), (" has ", " have "), (" differs ", " differ ")):
-        told = told.replace(one, many)
-    return told
+        words = words.replace(one, many)
+    return words
 
 
 def _models(models: Sequence[ModelFacts]) -> Iterator[str]:
@@ -436,38 +436,38 @@ def _models(models: Sequence[ModelFacts]) -> Iterator[str]:
 def _model(model: ModelFacts) -> str:
     if not model.answers:
         return f"{_code(model.name)} gave no recorded answer"
-    given = f"{_code(model.name)} gave {counted(model.answers, 'recorded answer')}"
+    answers = f"{_code(model.name)} gave {counted(model.answers, 'recorded answer')}"
     if model.dates is None:
-        return f"{given} (dates not recorded)"
+        return f"{answers} (dates not recorded)"
     first, last = model.dates
     span = f"on {first}" if first == last else f"from {first} to {last}"
     without = f", {model.undated} without a recorded date" if model.undated else ""
-    return f"{given} {span} (UTC){without}"
+    return f"{answers} {span} (UTC){without}"
 
 
 def _person(people: PeopleFacts) -> str:
     shown = " and ".join(_SHOWN.get(each, each) for each in people.shown)
     page = f"a page with {shown}" if shown else "a page"
-    told = (
+    words = (
         f"{_code(people.name)} are {counted(people.participants, 'participant')} who answered the "
         f"same questions on {page}, which gave {counted(people.rows, 'row')}"
     )
     if people.dates is None:
-        return f"{told} (dates not recorded)"
+        return f"{words} (dates not recorded)"
     first, last = people.dates
-    return f"{told}, {f'on {first}' if first == last else f'from {first} to {last}'} (UTC)"
+    return f"{words}, {f'on {first}' if first == last else f'from {first} to {last}'} (UTC)"
 
 
 def _told_sessions(sessions: Mapping[str, Any]) -> str:
     """Return how many participants began, ended and stopped, as a clause."""
-    told = (
+    words = (
         f"Of {counted(sessions['began'], 'participant')} who began, {sessions['complete']} "
         f"answered all questions, {sessions['partial']} stopped in the middle (complete probes "
         f"count) and {sessions['unanswered']} gave no answer"
     )
     if sessions["repeated"]:
-        told += f"; {sessions['repeated']} took part more than once, and the first session counts"
-    return told
+        words += f"; {sessions['repeated']} took part more than once, and the first session counts"
+    return words
 
 
 _SHOWN = {"film": "films", "story": "stories", "both": "stories and films"}
@@ -481,9 +481,9 @@ def _code(name: str) -> str:
 
 
 def _several(noun: str, names: Sequence[object], mark: str = _MARK, plural: str = "") -> str:
-    told = [f"{mark}{name}{mark}" for name in names]
+    marked = [f"{mark}{name}{mark}" for name in names]
     word = noun if len(names) == 1 else plural or f"{noun}s"
-    return f"{word} {_listed(told)}"
+    return f"{word} {_listed(marked)}"
 
 
 def _listed(parts: Sequence[str]) -> str:

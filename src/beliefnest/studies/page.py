@@ -98,10 +98,10 @@ def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:
         apart = result.apart(column)
         for by in (apart, (whole, *apart)) if several else (apart,):
             for values, pairs in result.paired(column, by):
-                told = [f"{name} {value}" for name, value in zip(by, values, strict=True)]
+                words = [f"{name} {value}" for name, value in zip(by, values, strict=True)]
                 if several and by == apart:
-                    told.insert(0, f"every {whole}")
-                yield column, ", ".join(told), pairs
+                    words.insert(0, f"every {whole}")
+                yield column, ", ".join(words), pairs
 
 
 def _players(plan: Mapping[str, Any]) -> str:

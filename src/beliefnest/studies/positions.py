@@ -8,19 +8,19 @@ from beliefnest.studies.clusters import rate_interval
 from beliefnest.studies.counting import Row
 
 
-def choices_of(rows: Sequence[Row], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+def choices_of(rows: Sequence[Row], content: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Yield the answers of one cell to questions with options.
 
     Args:
         rows: Rows of the cell, one for each probe.
-        found: Content of the cell's file.
+        content: Content of the cell's file.
 
     Yields:
         The probe's row with `question`; `options` (their number); `right_at` and `chosen_at`,
         positions from 1 in the order of the prompt. `right_at` is None if several options are
         right, `chosen_at` if there was no usable answer.
     """
-    for row, probe in zip(rows, found.get("probes", []), strict=False):
+    for row, probe in zip(rows, content.get("probes", []), strict=False):
         right = _right_answers(probe)
         for reply in probe["replies"]:
             options = reply.get("options") or []
@@ -62,10 +62,10 @@ def count_positions(
         `low` and `high` (95 %, clustered by variation); `chosen_1` and so on; `none` (no usable
         answer). Questions with several right options are left out.
     """
-    known = [each for each in choices if each["right_at"] is not None]
-    widest = max((each["options"] for each in known), default=0)
+    with_right = [each for each in choices if each["right_at"] is not None]
+    widest = max((each["options"] for each in with_right), default=0)
     groups: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
-    for each in known:
+    for each in with_right:
         groups.setdefault(tuple(each.get(name) for name in by), []).append(each)
     counted = []
     for values, group in groups.items():

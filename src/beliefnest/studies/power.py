@@ -119,8 +119,8 @@ class Resampled:
     def note(self) -> str:
         """Return that there are too few recorded variations, or that they are all the same."""
         if len(self.clusters) < FEWEST:
-            told = counted(len(self.clusters), "variation")
-            return f"{told} recorded, too few to draw from; play at least {FEWEST}"
+            size = counted(len(self.clusters), "variation")
+            return f"{size} recorded, too few to draw from; play at least {FEWEST}"
         if len({self._shares(each) for each in self.clusters}) == 1:
             return "all recorded variations have the same result, so that draws do not vary"
         return ""
@@ -215,8 +215,8 @@ def power_rows(
     Raises:
         InputError: A number is wrong.
     """
-    found = _simulated(sources, sizes, simulations, seed, on_progress)
-    return [{"of": name, **power.plain()} for name, power in found]
+    simulated = _simulated(sources, sizes, simulations, seed, on_progress)
+    return [{"of": name, **power.plain()} for name, power in simulated]
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,10 +33,10 @@ def assumed_sources(
     # Variations of one group may differ, if combinations are invalid: take the usual number.
     sizes = {Counter(each.values()).most_common(1)[0][0] for each in counts.values()}
     for size in sorted(sizes):
-        told = f"{size} row{'' if size == 1 else 's'} in each variation"
+        label = f"{size} row{'' if size == 1 else 's'} in each variation"
         if between is not None:
-            told += f" and {between}"
-        yield told, AssumedRates(**assumed, rows=size, pairs=0 if between is None else size)
+            label += f" and {between}"
+        yield label, AssumedRates(**assumed, rows=size, pairs=0 if between is None else size)
 
 
 def recorded_sources(
@@ -61,11 +61,11 @@ def recorded_sources(
     if not groups:
         raise InputError("no row is judged, so there is nothing to draw from; play the study first")
     for group, variations in groups.items():
-        told = _told(list(zip(by, group, strict=True)))
-        yield told, Resampled(tuple((tuple(own), ()) for own in variations.values()))
+        label = _told(list(zip(by, group, strict=True)))
+        yield label, Resampled(tuple((tuple(own), ()) for own in variations.values()))
     for within, column, pairs in compared:
-        told = ", ".join(filter(None, [_told(within), f"{column} {pairs.one} - {pairs.other}"]))
-        yield told, Resampled(tuple(((), cluster) for cluster in pairs.clusters))
+        label = ", ".join(filter(None, [_told(within), f"{column} {pairs.one} - {pairs.other}"]))
+        yield label, Resampled(tuple(((), cluster) for cluster in pairs.clusters))
 
 
 def _told(values: Sequence[tuple[str, Any]]) -> str:

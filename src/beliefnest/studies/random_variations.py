@@ -58,18 +58,18 @@ def drawn_variations(
             f"{drawing.size:,}: all combinations of {drawing.text}; ask for fewer"
         )
     draws = _draws(document, drawing, random.Random(seed), keeps or (lambda _: True))
-    found = list(itertools.islice(draws, count))
-    if not found:
+    drawn = list(itertools.islice(draws, count))
+    if not drawn:
         raise InputError(
             f"{document.source}: none of {_MISSES} draws keeps the constraints; widen a range"
         )
-    if len(found) < count:
+    if len(drawn) < count:
         raise InputError(
-            f"{document.source}: variations is {count}, and there are {len(found)} different ones: "
-            f"all combinations of {drawing.text} that keep the constraints; ask for {len(found)} "
+            f"{document.source}: variations is {count}, and there are {len(drawn)} different ones: "
+            f"all combinations of {drawing.text} that keep the constraints; ask for {len(drawn)} "
             "at most, or give parameters more values"
         )
-    return found
+    return drawn
 
 
 def _draws(
@@ -81,21 +81,21 @@ def _draws(
     seen: set[str] = set()
     misses = 0
     while misses < _MISSES:
-        found = drawing.draw(chance)
+        variation = drawing.draw(chance)
         misses += 1
-        if found.key in seen or not _is_kept(document, found, keeps):
+        if variation.key in seen or not _is_kept(document, variation, keeps):
             continue
-        seen.add(found.key)
+        seen.add(variation.key)
         misses = 0
-        yield found
+        yield variation
     if drawing.size <= _MOST_LISTED:
         left = [each for each in drawing.all() if each.key not in seen]
         chance.shuffle(left)
         yield from (each for each in left if _is_kept(document, each, keeps))
 
 
-def _is_kept(document: Document, found: Variation, keeps: Callable[[Variation], bool]) -> bool:
-    return broken_constraint(document, found.parameters) is None and keeps(found)
+def _is_kept(document: Document, variation: Variation, keeps: Callable[[Variation], bool]) -> bool:
+    return broken_constraint(document, variation.parameters) is None and keeps(variation)
 
 
 @dataclass(frozen=True)
@@ -228,16 +228,16 @@ def _is_possible(document: Document, changes: Mapping[str, Any]) -> bool:
 
 def _proper_names(content: Mapping[str, Any]) -> tuple[str, ...]:
     """Return agents whose names are not ordinary words in the tasks, as `seller` would be."""
-    told = " ".join(str(probe.get("task", "")) for probe in content.get("probes", ()))
-    words = set(re.findall(r"\w+", told))
+    tasks = " ".join(str(probe.get("task", "")) for probe in content.get("probes", ()))
+    words = set(re.findall(r"\w+", tasks))
     return tuple(name for name in content["agents"] if name not in words)[: len(_NAMES) // 2]
 
 
 def _carried(content: Mapping[str, Any]) -> tuple[str, ...]:
     """Return items without effects that agents carry or containers hold at the start."""
-    held = [agent.get("inventory") or {} for agent in content["agents"].values()]
-    held += [container.get("items") or {} for container in content.get("containers", ())]
-    return tuple(dict.fromkeys(name for items in held for name in items if name in _THINGS))
+    contents = [agent.get("inventory") or {} for agent in content["agents"].values()]
+    contents += [container.get("items") or {} for container in content.get("containers", ())]
+    return tuple(dict.fromkeys(name for items in contents for name in items if name in _THINGS))
 
 
 def _named_by_parameters(content: Mapping[str, Any]) -> frozenset[str]:

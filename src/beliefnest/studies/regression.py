@@ -214,8 +214,8 @@ def fit_rows(
 
 def _terms(names: Sequence[str], fit: Fit) -> tuple[Term, ...]:
     columns = (fit.estimates, fit.errors, fit.tests, fit.low, fit.high)
-    found = zip(*(each.tolist() for each in columns), strict=True)
-    return tuple(Term(name, *values) for name, values in zip(names, found, strict=False))
+    estimates = zip(*(each.tolist() for each in columns), strict=True)
+    return tuple(Term(name, *values) for name, values in zip(names, estimates, strict=False))
 
 
 def _counts(rows: Sequence[Row], names: Sequence[str]) -> list[dict[str, Any]]:
@@ -237,9 +237,9 @@ def _fitted(
         return Fit.failed(fault), (), None
     design, terms = _design(rows, effects, names)
     if np.linalg.matrix_rank(design) < design.shape[1]:
-        told = ", ".join(":".join(each) for each in effects)
+        text = ", ".join(":".join(each) for each in effects)
         fault = (
-            f"the effects {told} cannot be told apart: one follows from the others, or some "
+            f"the effects {text} cannot be told apart: one follows from the others, or some "
             "combination has no rows; name fewer effects"
         )
         return Fit.failed(fault), (), None
@@ -259,10 +259,10 @@ def _fitted(
         )
     if not fault:
         fit = gee if kind == "gee" else mixed
-        found = fit(right, design, groups, family)
-        if not found.fault:
-            return found, terms, None
-        fault = found.fault
+        fitted = fit(right, design, groups, family)
+        if not fitted.fault:
+            return fitted, terms, None
+        fault = fitted.fault
     other = _substitute(right, design, groups, terms, kind, family, solid=not (thin or endless))
     return Fit.failed(fault), (), other
 
@@ -305,18 +305,18 @@ def _substitute(
     if int(groups.max()) + 1 < FEWEST:
         return None
     if solid and kind == "mixed":
-        found = gee(right, design, groups, family)
-        if not found.fault:
-            return Substitute(_method("gee", family, found.told), _terms(terms, found))
+        fitted = gee(right, design, groups, family)
+        if not fitted.fault:
+            return Substitute(_method("gee", family, fitted.told), _terms(terms, fitted))
     if family == "binomial":
-        found = firth(right, design, groups)
-        return None if found.fault else Substitute(_FIRTH, _terms(terms, found))
+        fitted = firth(right, design, groups)
+        return None if fitted.fault else Substitute(_FIRTH, _terms(terms, fitted))
     if solid:
-        found = bootstrap(right, design, groups)
-        if not found.fault:
+        fitted = bootstrap(right, design, groups)
+        if not fitted.fault:
             # A coefficient that is the same in all draws has no error.
-            known = tuple(each for each in _terms(terms, found) if each.high - each.low > 1e-9)
-            return Substitute(_BOOTSTRAP, known) if known else None
+            bounded = tuple(each for each in _terms(terms, fitted) if each.high - each.low > 1e-9)
+            return Substitute(_BOOTSTRAP, bounded) if bounded else None
     return None
 
 
@@ -331,13 +331,13 @@ _BOOTSTRAP = (
 )
 
 
-def _method(kind: FitKind, family: Family, told: str) -> str:
+def _method(kind: FitKind, family: Family, how: str) -> str:
     """Return a method in words."""
     software = f"statsmodels {statsmodels().__version__}"
     if kind == "gee":
         link = "logit link" if family == "binomial" else "identity link"
         return (
-            f"generalized estimating equations ({family}, {link}), {told} within variations, "
+            f"generalized estimating equations ({family}, {link}), {how} within variations, "
             f"bias-reduced robust standard errors (Mancl and DeRouen, 2001); {software}"
         )
     if family == "binomial":
@@ -366,9 +366,9 @@ def _design(
             f"{name}[{level}]": np.array(
                 [level_of(row, name) == level for row in rows], dtype=float
             )
-            for level in found[1:]
+            for level in factors[1:]
         }
-        for name, found in levels.items()
+        for name, factors in levels.items()
     }
     columns = {"intercept": np.ones(len(rows))}
     for effect in effects:

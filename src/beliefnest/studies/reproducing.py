@@ -79,11 +79,11 @@ def reproduce_study(
     recorded = StudyRecord.read(folder)
     # Answers of people cannot be played again; their rows are compared with their cells.
     plan = recorded.folder.plan()
-    found = {cell["name"]: recorded.folder.cell(cell["name"]) for cell in plan["cells"]}
+    contents = {cell["name"]: recorded.folder.cell(cell["name"]) for cell in plan["cells"]}
     ended = [
         cell
         for cell in plan["cells"]
-        if (content := found[cell["name"]]) is not None and content["error"] is None
+        if (content := contents[cell["name"]]) is not None and content["error"] is None
     ]
     inputs = _Inputs.of(folder, plan)
     check_trust(inputs.code(), trust=trust)
@@ -174,8 +174,8 @@ def _differing_cells(
         if failed is not None and failed["error"] is not None:
             yield PairedDifference(where, ERROR, None, failed["error"])
             continue
-        found = list(differing_rows(before, after, _probe_in(where)))
-        yield from found or differing_contents(recorded.folder.cell(name), failed, where, ("run",))
+        pairs = list(differing_rows(before, after, _probe_in(where)))
+        yield from pairs or differing_contents(recorded.folder.cell(name), failed, where, ("run",))
 
 
 def _probe_in(file: str) -> Callable[[int], str]:
@@ -314,9 +314,9 @@ def check_templates(document: Document) -> None:
     Raises:
         InputError: A template is neither built in nor kept with the document.
     """
-    known = {*BUILT_IN_TEMPLATES, *document.templates}
+    names = {*BUILT_IN_TEMPLATES, *document.templates}
     for name in _templates_in(document.root):
-        if name not in known:
+        if name not in names:
             raise InputError(
                 f"{document.source} names the template {quoted(name)}, which the supplement does "
                 "not hold"

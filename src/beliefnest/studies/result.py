@@ -98,10 +98,10 @@ class StudyResult(StudyRecord):
             InputError: The column does not exist, or no two rows differ in it alone.
             MissingExtraError: pandas is not installed.
         """
-        found = self.compared(between, by)
+        compared = self.compared(between, by)
         names = list(self.apart(between)) if by is None else self.checked(by)
         columns = [*names, *COMPARED, "low", "high", "p", "chance_one", "chance_other"]
-        return plain_frame({name: Typed([row[name] for row in found]) for name in columns})
+        return plain_frame({name: Typed([row[name] for row in compared]) for name in columns})
 
     def fit(
         self, effects: Sequence[Effect] | str, kind: FitKind = "gee", family: Family = "binomial"

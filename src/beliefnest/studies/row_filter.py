@@ -44,12 +44,12 @@ class RowFilter:
     holds: _Test
 
     @classmethod
-    def parse(cls, text: str, known: Sequence[str]) -> "RowFilter":
+    def parse(cls, text: str, columns: Sequence[str]) -> "RowFilter":
         """Return the condition that a text describes.
 
         Args:
             text: The condition.
-            known: Names of all columns.
+            columns: Names of all columns.
 
         Raises:
             InputError: The text is no condition, or names an unknown column.
@@ -61,10 +61,10 @@ class RowFilter:
             # Names in the order of the text.
             names = [each for each in ast.walk(tree) if isinstance(each, ast.Name)]
             names.sort(key=lambda each: (each.lineno, each.col_offset))
-            return cls(text, tuple(each.id for each in names), _test(text, tree.body, known))
+            return cls(text, tuple(each.id for each in names), _test(text, tree.body, columns))
         except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-            told = error.msg if isinstance(error, SyntaxError) else str(error)
-            raise _fault(text, told) from None
+            reason = error.msg if isinstance(error, SyntaxError) else str(error)
+            raise _fault(text, reason) from None
 
     def kept(self, rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
         """Return the rows that hold the condition.
@@ -72,8 +72,8 @@ class RowFilter:
         Raises:
             InputError: A value cannot be compared, or no row holds the condition.
         """
-        found = [row for row in rows if self.holds(row)]
-        if rows and not found:
+        kept_rows = [row for row in rows if self.holds(row)]
+        if rows and not kept_rows:
             name = self.columns[0] if self.columns else ""
             values = dict.fromkeys(str(row.get(name)) for row in rows)
             raise InputError(
@@ -81,29 +81,29 @@ class RowFilter:
                 if name
                 else f"no row holds {self.text!r}; {_HOW}"
             )
-        return found
+        return kept_rows
 
 
 def _fault(text: str, why: str) -> InputError:
     return InputError(f"{text!r} is no condition on rows: {why}; {_HOW}")
 
 
-def _test(text: str, node: ast.expr, known: Sequence[str]) -> _Test:
+def _test(text: str, node: ast.expr, columns: Sequence[str]) -> _Test:
     """Return the test of a part of a condition."""
     match node:
         case ast.BoolOp(op=op, values=values):
-            parts = [_test(text, each, known) for each in values]
+            parts = [_test(text, each, columns) for each in values]
             every = isinstance(op, ast.And)
             return lambda row: (all if every else any)(part(row) for part in parts)
         case ast.UnaryOp(op=ast.Not(), operand=operand):
-            part = _test(text, operand, known)
+            part = _test(text, operand, columns)
             return lambda row: not part(row)
         case ast.Compare(left=left, ops=ops, comparators=others):
-            sides = [_side(text, each, known) for each in (left, *others)]
+            sides = [_side(text, each, columns) for each in (left, *others)]
             steps = list(zip(ops, sides, sides[1:], strict=False))
             return lambda row: all(_compared(text, op, a(row), b(row)) for op, a, b in steps)
         case ast.Name():
-            value = _side(text, node, known)
+            value = _side(text, node, columns)
             return lambda row: _truth(text, node.id, value(row))
     raise _fault(text, f"{ast.unparse(node)!r} is not understood")
 
@@ -114,13 +114,13 @@ def _truth(text: str, name: str, value: object) -> bool:
     return bool(value)
 
 
-def _side(text: str, node: ast.expr, known: Sequence[str]) -> Callable[[Mapping[str, Any]], Any]:
+def _side(text: str, node: ast.expr, columns: Sequence[str]) -> Callable[[Mapping[str, Any]], Any]:
     """Return the function that reads one side of a comparison from a row."""
     if isinstance(node, ast.Name):
         name = node.id
-        if name not in known:
-            told = nearest_or_all(name, known)
-            raise InputError(f"there is no column {name!r}{told}; a text stands in quotation marks")
+        if name not in columns:
+            hint = nearest_or_all(name, columns)
+            raise InputError(f"there is no column {name!r}{hint}; a text stands in quotation marks")
         return lambda row: row.get(name)
     # A literal: a text, a number, True, False, None, or a tuple or list of these.
     try:

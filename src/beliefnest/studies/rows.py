@@ -18,19 +18,19 @@ from beliefnest.studies.table import (
 )
 
 
-def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+def _results(cell: Mapping[str, Any], content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """Yield the result of each probe.
 
     A failed cell has a result for each of its probes, with the reason (see `lost`). A cell
     without probes has a single result about its expectations.
     """
-    if found["error"] is not None:
+    if content["error"] is not None:
         for probe in cell["probes"] or [{}]:
-            yield {**probe, **lost(found, is_judged=bool(probe.get("expected")))}
-    elif found["probes"]:
-        yield from found["probes"]
+            yield {**probe, **lost(content, is_judged=bool(probe.get("expected")))}
+    elif content["probes"]:
+        yield from content["probes"]
     else:
-        yield _beliefs(found["expectations"])
+        yield _beliefs(content["expectations"])
 
 
 def _beliefs(expectations: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

@@ -127,21 +127,21 @@ class ReportedRun:
     @cached_property
     def _cells(self) -> dict[str, tuple[dict[str, Any], dict[str, Any]]]:
         """Return the entry of each cell in the plan, and its content, by name."""
-        found = {}
+        cells = {}
         for number, run in enumerate(self.report["runs"], 1):
             name = f"run-{number}"
-            found[name] = (self._planned(name, run, []), {"error": None, **run, "run": ""})
+            cells[name] = (self._planned(name, run, []), {"error": None, **run, "run": ""})
         for number, failure in enumerate(self.report["failures"], 1):
             name = f"failure-{number}"
-            found[name] = (self._planned(name, failure, self._probes), dict(failure))
-        return found
+            cells[name] = (self._planned(name, failure, self._probes), dict(failure))
+        return cells
 
     @property
     def _probes(self) -> list[dict[str, Any]]:
         """Return the probes of conditions without a result: those of a condition with one."""
-        known = self.report["runs"][:1]
+        first_runs = self.report["runs"][:1]
         keys = ("label", "path", "acts_in", "agent", "task", "expected")
-        probes = known[0]["probes"] if known else [{"expected": {"unknown": True}}]
+        probes = first_runs[0]["probes"] if first_runs else [{"expected": {"unknown": True}}]
         return [{key: probe[key] for key in keys if key in probe} for probe in probes]
 
     def _planned(
@@ -174,10 +174,10 @@ class ReportedRun:
         file = self.path / "model.jsonl"
         if not file.is_file():
             return []
-        found = []
+        exchanges = []
         for number, line in enumerate(read_regular(file).splitlines(), 1):
             try:
-                found.append(decode_exchange(line))
+                exchanges.append(decode_exchange(line))
             except msgspec.MsgspecError as error:
                 raise InputError(f"{file}:{number} is damaged: {error}; {_OTHER}") from None
-        return found
+        return exchanges

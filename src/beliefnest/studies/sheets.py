@@ -75,11 +75,11 @@ def decode_sheet(content: bytes, where: str, needed: Sequence[str] = ()) -> Shee
     first, _, rest = text.partition("\n")
     delimiters: Sequence[str] = _DELIMITERS
     # Excel reads this line, and some programs write it.
-    told = re.match(r'"?sep=(.)"?;*$', first)
-    if told is not None:
-        delimiters, text, skipped = (told[1],), rest, 1
-    found = max((_header(text, each) for each in delimiters), key=lambda h: _fit(h[1], needed))
-    delimiter, columns = found
+    match = re.match(r'"?sep=(.)"?;*$', first)
+    if match is not None:
+        delimiters, text, skipped = (match[1],), rest, 1
+    header = max((_header(text, each) for each in delimiters), key=lambda h: _fit(h[1], needed))
+    delimiter, columns = header
     missing = [name for name in needed if name not in columns]
     if missing:
         raise InputError(

@@ -315,8 +315,8 @@ class Study:
         self._check_models(terms, backend)
         with holding(place.path):
             self._write_plan(place, self._plan_json(part))
-            told = on_progress or _say_nothing
-            run_cells(part.cells, place, terms, jobs, backend, told, ahead)
+            say = on_progress or _say_nothing
+            run_cells(part.cells, place, terms, jobs, backend, say, ahead)
         return StudyResult(place)
 
     def participants(
@@ -401,7 +401,7 @@ class Study:
                 f"the parameter {quoted(PARTICIPANT)} has the name of the column of people; give "
                 "it another name"
             )
-        found = join_answers(
+        people = join_answers(
             design,
             cells,
             self._documents,
@@ -416,9 +416,9 @@ class Study:
         with holding(place.path):
             if not place.has_plan:
                 self._write_plan(place, self._plan_json(self.plan()))
-            place.write_people(name, found.cells, asdict(found.sessions))
-            write_answers(place.path / "people.csv", found.answers)
-        return StudyResult(place), tuple(found.notes)
+            place.write_people(name, people.cells, asdict(people.sessions))
+            write_answers(place.path / "people.csv", people.answers)
+        return StudyResult(place), tuple(people.notes)
 
     def items(
         self,
@@ -599,9 +599,9 @@ class Study:
     def _check_valid(self, plan: Plan[Cell] | Plan[EpisodeCell]) -> None:
         """Raise InputError if no combination of a plan is valid."""
         if not plan.cells and plan.invalid:
-            told = f"no combination is valid; the reason of the first: {plan.invalid[0].why}"
+            message = f"no combination is valid; the reason of the first: {plan.invalid[0].why}"
             with self._naming(("variations",)):
-                raise InputError(told)
+                raise InputError(message)
 
     def _plan_json(self, plan: Plan[Cell] | Plan[EpisodeCell]) -> dict[str, Any]:
         return {
@@ -641,11 +641,11 @@ def _templates(names: Sequence[str] | None) -> tuple[Template, ...]:
 def _constraints(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
     if isinstance(constraints, str) or callable(constraints):
         return (constraints,)
-    given: Sequence[object] = constraints
-    for each in given:
+    listed: Sequence[object] = constraints
+    for each in listed:
         if not isinstance(each, str) and not callable(each):
-            told = f"constraints has {quoted(each)}; give expressions, or functions of values"
-            raise StudyKeyError("constraints", told)
+            message = f"constraints has {quoted(each)}; give expressions, or functions of values"
+            raise StudyKeyError("constraints", message)
     return tuple(constraints)
 
 

@@ -166,13 +166,13 @@ class StudyFolder:
 
     def exchanges(self) -> list[Exchange]:
         """Return the cached answers; raise InputError if a file is damaged."""
-        found = []
+        exchanges = []
         for file in sorted(self.answers.glob("*.json")):
             try:
-                found.append(decode_exchange(read_regular(file)))
+                exchanges.append(decode_exchange(read_regular(file)))
             except (msgspec.MsgspecError, OSError) as error:
                 raise InputError(f"{file} is damaged: {error}; delete it") from None
-        return found
+        return exchanges
 
     def seconds(self) -> dict[str, float]:
         """Return the known wall times of cells, in seconds."""
@@ -190,9 +190,9 @@ class StudyFolder:
     def plan(self) -> dict[str, Any]:
         """Return the latest plan; raise InputError if it is missing or damaged."""
         file = self.path / _PLAN
-        found = read_marked(file, _FORM, dict[str, Any], _PLAN_AGAIN)
-        checked_form(found, plan_form(found), file, _PLAN_AGAIN)
-        return found
+        plan = read_marked(file, _FORM, dict[str, Any], _PLAN_AGAIN)
+        checked_form(plan, plan_form(plan), file, _PLAN_AGAIN)
+        return plan
 
     def people(self) -> list[dict[str, Any]]:
         """Return the entries of all cells that participants answered.

@@ -69,8 +69,8 @@ def design_of(
         return _episodes(keys, constraints)
     for name, default in (("policies", ()), ("orders", ()), ("seeds", 1), ("help", False)):
         if getattr(keys, name) not in ([], default):
-            told = "policies, orders, seeds and help are for tasks; name tasks to play episodes"
-            raise StudyKeyError(name, told)
+            message = "policies, orders, seeds and help are for tasks; name tasks to play episodes"
+            raise StudyKeyError(name, message)
     groups = labelled_scenarios(keys.scenarios)
     return Design(
         scenarios=tuple(name for _, names in groups for name in names),
@@ -97,11 +97,11 @@ def _shortcuts(keys: StudyKeys) -> tuple[str, ...]:
     names = several("balance", keys.balance)
     for number, name in enumerate(names):
         if name not in FIXED_SOLVERS:
-            told = f"there is no shortcut {quoted(name)}{nearest_or_all(name, list(FIXED_SOLVERS))}"
-            raise StudyKeyError(("balance", number), told)
+            why = f"there is no shortcut {quoted(name)}{nearest_or_all(name, list(FIXED_SOLVERS))}"
+            raise StudyKeyError(("balance", number), why)
     if names and keys.design != "crossed":
-        told = f"design {quoted(keys.design)} allocates conditions itself; leave one of them out"
-        raise StudyKeyError("balance", told)
+        why = f"design {quoted(keys.design)} allocates conditions itself; leave one of them out"
+        raise StudyKeyError("balance", why)
     return names
 
 
@@ -115,24 +115,24 @@ def labelled_scenarios(entries: object) -> list[tuple[str, tuple[str, ...]]]:
     listed = (
         entries if isinstance(entries, Sequence) and not isinstance(entries, str) else [entries]
     )
-    found: list[tuple[str, tuple[str, ...]]] = []
+    labelled: list[tuple[str, tuple[str, ...]]] = []
     for number, each in enumerate(listed if entries != () else ()):
         if not isinstance(each, Mapping):
-            found.append(("", several("scenarios", each)))
+            labelled.append(("", several("scenarios", each)))
             continue
         place = ("scenarios", number)
         label = each.get("label")
         if set(each) != {"label", "scenarios"} or not isinstance(label, str) or not label.strip():
-            told = (
+            message = (
                 f"has {quoted(dict(each))}; give a name, or a mapping with `label` and `scenarios`"
             )
-            raise StudyKeyError(place, f"scenarios {told}")
-        found.append((label.strip(), several("scenarios", each["scenarios"])))
-    bare = [names[0] for label, names in found if not label and names]
-    if bare and len(bare) < len(found):
-        told = f"{bare[0]} has no label, which other scenarios have; give it one"
-        raise StudyKeyError("scenarios", told)
-    return found
+            raise StudyKeyError(place, f"scenarios {message}")
+        labelled.append((label.strip(), several("scenarios", each["scenarios"])))
+    bare = [names[0] for label, names in labelled if not label and names]
+    if bare and len(bare) < len(labelled):
+        message = f"{bare[0]} has no label, which other scenarios have; give it one"
+        raise StudyKeyError("scenarios", message)
+    return labelled
 
 
 def _settings(keys: StudyKeys) -> ModelSettings:
@@ -148,9 +148,9 @@ def _settings(keys: StudyKeys) -> ModelSettings:
 
 
 def _allocation(name: object) -> Allocation:
-    for known in DESIGNS:
-        if known == name:
-            return known
+    for allocation in DESIGNS:
+        if allocation == name:
+            return allocation
     raise StudyKeyError("design", f"design is {quoted(name)}; give one of {', '.join(DESIGNS)}")
 
 

@@ -87,9 +87,9 @@ class StudyRecord:
         Raises:
             InputError: The text is no condition, names an unknown column, or no row holds it.
         """
-        found = replace(self, kept=RowFilter.parse(condition, self.columns))
-        found.rows  # noqa: B018 - refuse a condition that no row holds
-        return found
+        filtered = replace(self, kept=RowFilter.parse(condition, self.columns))
+        filtered.rows  # noqa: B018 - refuse a condition that no row holds
+        return filtered
 
     @property
     def whole(self) -> Self:
@@ -99,8 +99,8 @@ class StudyRecord:
     @cached_property
     def failed(self) -> dict[str, str]:
         """Reasons of tried cells without a result, by name; they are tried again."""
-        found = {cell["name"]: self.folder.cell(cell["name"]) for cell in self._plan["cells"]}
-        return {n: each["error"] for n, each in found.items() if each and each["error"] is not None}
+        cells = {cell["name"]: self.folder.cell(cell["name"]) for cell in self._plan["cells"]}
+        return {n: each["error"] for n, each in cells.items() if each and each["error"] is not None}
 
     @property
     def invalid(self) -> list[dict[str, Any]]:
@@ -193,10 +193,10 @@ class StudyRecord:
         rows: dict[str, list[dict[str, Any]]] = {}
         for row in self._every_row:
             rows.setdefault(row["cell"], []).append(row)
-        found = ((own, self.folder.cell(name)) for name, own in rows.items())
+        cells_of_rows = ((own, self.folder.cell(name)) for name, own in rows.items())
         choices = [
             choice
-            for own, cell in found
+            for own, cell in cells_of_rows
             if cell is not None and cell["error"] is None and own[0]["copy_of"] is None
             for choice in choices_of(own, cell)
         ]

@@ -134,8 +134,8 @@ def symmetry_named(name: object) -> Symmetry:
     for symmetry in SYMMETRIES:
         if symmetry.name == name:
             return symmetry
-    known = ", ".join(symmetry.name for symmetry in SYMMETRIES)
-    raise InputError(f"there is no symmetry {quoted(name)}; there are {known}")
+    names = ", ".join(symmetry.name for symmetry in SYMMETRIES)
+    raise InputError(f"there is no symmetry {quoted(name)}; there are {names}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -109,7 +109,7 @@ class Table:
         """Yield the rows of the cells of a plan, see `rows_with_copies`."""
         varied = variation_columns(plan)
 
-        return rows_with_copies(folder, plan, lambda cell, found: self.rows_of(cell, found, varied))
+        return rows_with_copies(folder, plan, lambda cell, done: self.rows_of(cell, done, varied))
 
     def planned(self, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield the rows that a plan will have, without results.
@@ -124,18 +124,18 @@ class Table:
                 yield from self.rows_of(cell, {"error": "not played"}, varied)
 
     def rows_of(
-        self, cell: Mapping[str, Any], found: Mapping[str, Any], varied: Iterable[str]
+        self, cell: Mapping[str, Any], content: Mapping[str, Any], varied: Iterable[str]
     ) -> Iterator[dict[str, Any]]:
         """Yield the rows of one cell.
 
         Args:
             cell: Entry of the cell in the plan.
-            found: Content of the cell's file.
+            content: Content of the cell's file.
             varied: Names of the columns of variations.
         """
         variation = _varied(cell)
-        for result in self.results(cell, found):
-            source = RowSource(cell, found, result)
+        for result in self.results(cell, content):
+            source = RowSource(cell, content, result)
             yield {
                 **{column.name: column.read(source) for column in self.first},
                 **{name: plain_value(variation.get(name)) for name in varied},
@@ -143,22 +143,22 @@ class Table:
             }
 
 
-def lost(found: Mapping[str, Any], *, is_judged: bool) -> dict[str, Any]:
+def lost(content: Mapping[str, Any], *, is_judged: bool) -> dict[str, Any]:
     """Return what the rows of a cell without a result hold.
 
     No rate leaves out a cell in which a model was asked, or a world failed.
 
     Args:
-        found: Content of the cell's file, with `error`; without `kind`, the cell was not played.
+        content: Content of the cell's file, with `error`; without `kind`, the cell was not played.
         is_judged: True if there is an expectation, which then is not met.
     """
-    kind = found.get("kind")
+    kind = content.get("kind")
     # Nobody was asked in a cell that was not played, or whose model is not there.
     asked = kind is not None and kind not in _NOT_ASKED
     return {
         "ok": False if asked and is_judged else None,
         "outcome": _NO_ANSWER if kind in _NO_ANSWER_KINDS else _FAILED,
-        "why_not": found["error"],
+        "why_not": content["error"],
     }
 
 

@@ -115,12 +115,12 @@ def _box(document: Document) -> Box:
 
 
 def _check_agents(document: Document, agents: Mapping[str, str]) -> None:
-    known = set(document.root.value["agents"].value)
-    unknown = [name for name in agents if name not in known]
+    agents_there = set(document.root.value["agents"].value)
+    unknown = [name for name in agents if name not in agents_there]
     if unknown:
-        there = ", ".join(sorted(known))
+        there = ", ".join(sorted(agents_there))
         raise InputError(f"there is no agent {quoted(unknown[0])} to rename; agents are {there}")
-    new = [agents.get(name, name) for name in known]
+    new = [agents.get(name, name) for name in agents_there]
     twice = [name for name in new if new.count(name) > 1]
     if twice:
         raise InputError(f"two agents would be called {quoted(twice[0])}")

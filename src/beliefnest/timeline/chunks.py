@@ -122,8 +122,8 @@ class Chunks:
                 for entry in decoded[part]:
                     if isinstance(entry, Frame):
                         agents.update(entry.agents)
-            known = agents if full else None
-            self._write(timeline, packed + at, loose[part], decoded[part], known)
+            agents_now = agents if full else None
+            self._write(timeline, packed + at, loose[part], decoded[part], agents_now)
         return packed + len(loose) - len(loose) % CHUNK_ENTRIES
 
     def raw(
@@ -167,25 +167,25 @@ class Chunks:
         """Yield chunks, each with those of its encoded entries that lie from start to stop - 1."""
         # Query anew for each chunk: a writer may join chunks between two reads.
         while start < stop:
-            found = self._chunk(timeline, "first <= ? ORDER BY first DESC", start)
-            missed = gone() if found is None and gone is not None else None
+            chunk = self._chunk(timeline, "first <= ? ORDER BY first DESC", start)
+            missed = gone() if chunk is None and gone is not None else None
             if missed is not None:
                 raise missed
             part = []
-            if found is not None:
-                part = self._encoded(found)[start - found.first : stop - found.first]
-            if found is None or not part:
+            if chunk is not None:
+                part = self._encoded(chunk)[start - chunk.first : stop - chunk.first]
+            if chunk is None or not part:
                 missing = f"entry {start} of timeline {timeline} is missing"
                 raise damage(self._database.path, missing)
-            yield found, part
+            yield chunk, part
             start += len(part)
 
     def entries_until(self, timeline: int, tick: int) -> int | None:
         """Return the number of entries at a tick or earlier; None if all are."""
-        found = self._chunk(timeline, "last_tick > ? ORDER BY last_tick, first", tick)
-        if found is None:
+        chunk = self._chunk(timeline, "last_tick > ? ORDER BY last_tick, first", tick)
+        if chunk is None:
             return None
-        return found.first + bisect_right(codec.decode_ticks(self._encoded(found)), tick)
+        return chunk.first + bisect_right(codec.decode_ticks(self._encoded(chunk)), tick)
 
     def filtered(
         self, timeline: int, start: int, stop: int, what: EntryFilter
@@ -194,18 +194,18 @@ class Chunks:
         while start < stop:
             # No chunk has more than CHUNK_ENTRIES entries. The lower bound on `first` therefore
             # loses nothing, and lets SQLite's index lead straight to the first match.
-            found = self._chunk(
+            chunk = self._chunk(
                 timeline,
                 f"first > ? AND first + count > ? AND first < ? AND {what} > 0 ORDER BY first",
                 start - CHUNK_ENTRIES,
                 start,
                 stop,
             )
-            if found is None:
+            if chunk is None:
                 return
-            begin, last = max(start, found.first), min(stop, found.first + found.count)
-            part = self._encoded(found)[begin - found.first : last - found.first]
-            for number, entry in enumerate(self._decoded_all(found, part), begin):
+            begin, last = max(start, chunk.first), min(stop, chunk.first + chunk.count)
+            part = self._encoded(chunk)[begin - chunk.first : last - chunk.first]
+            for number, entry in enumerate(self._decoded_all(chunk, part), begin):
                 if is_found(entry, what):
                     yield number, entry
             start = last
@@ -248,8 +248,8 @@ class Chunks:
 
     def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
         """Return the agents stored with the compressed chunk before an entry, or none."""
-        found = self._chunk(timeline, "first < ? ORDER BY first DESC", first)
-        return {} if found is None else self._agents_of(found)
+        chunk = self._chunk(timeline, "first < ? ORDER BY first DESC", first)
+        return {} if chunk is None else self._agents_of(chunk)
 
     def _agents_of(self, chunk: _Chunk) -> dict[str, AgentState | None]:
         """Return the agents stored with a compressed chunk."""
@@ -286,15 +286,15 @@ class Chunks:
         `agents` holds the last state of each agent up to the end of a chunk that is to be
         compressed; with None the chunk stays uncompressed.
         """
-        body, known = codec.join(encoded), b""
+        body, packed_agents = codec.join(encoded), b""
         if agents is not None:
-            body, known = self.compressed(body), self.compressed(codec.encode(agents))
+            body, packed_agents = self.compressed(body), self.compressed(codec.encode(agents))
         chunk = _Chunk(
             timeline,
             first,
             len(encoded),
             *_summary(entries),
-            known,
+            packed_agents,
             int(agents is not None),
             body,
         )
@@ -305,15 +305,15 @@ class Chunks:
         entries = [self._decoded(chunk, encoded) for encoded in part]
         if self.bounds is None or len(entries) != chunk.count:
             return entries
-        told = (chunk.first_tick, chunk.last_tick, chunk.events, chunk.changes)
-        if told != _summary(entries):
-            fault = f"a chunk tells {told} of entries with {_summary(entries)}"
+        summary = (chunk.first_tick, chunk.last_tick, chunk.events, chunk.changes)
+        if summary != _summary(entries):
+            fault = f"a chunk tells {summary} of entries with {_summary(entries)}"
             raise damage(self._database.path, f"{fault} as ticks, events and changes")
         before = self._agents_before(chunk.timeline, chunk.first) if chunk.compressed else {}
         # None before a later chunk: a writer may have deleted the timeline meanwhile.
         if before or (chunk.compressed and chunk.first == 0):
-            known = self._agents_of(chunk)
-            if known != before | codec.decode_last_agents(part):
+            agents_stored = self._agents_of(chunk)
+            if agents_stored != before | codec.decode_last_agents(part):
                 raise damage(self._database.path, "a chunk tells other agents than its entries")
         return entries
 

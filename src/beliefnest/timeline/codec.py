@@ -195,8 +195,8 @@ def _blocks_from(body: _SnapshotBody, box: Box) -> Terrain:
     if min(box.shape) > 0 and not body.chunks and len(body.blocks) == 4 * math.prod(box.shape):
         return Terrain.of(np.frombuffer(body.blocks, "<i4").reshape(box.shape))
     if not body.chunks or (fault := box_fault(box)):
-        told = f": {fault}" if body.chunks else ""
-        raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}{told}")
+        reason = f": {fault}" if body.chunks else ""
+        raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}{reason}")
     try:
         return unpacked(body.blocks, box.shape, body.chunks)
     except ValueError as damage:

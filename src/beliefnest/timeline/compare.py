@@ -30,9 +30,9 @@ class EntryDifference:
     found: Any
 
 
-def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> EntryDifference | None:
+def first_difference(recorded: Iterable[Entry], again: Iterable[Entry]) -> EntryDifference | None:
     """Return the first difference between two histories; None if they are the same."""
-    for number, (old, new) in enumerate(zip_longest(recorded, found)):
+    for number, (old, new) in enumerate(zip_longest(recorded, again)):
         if old == new:
             continue
         tick = min(entry.tick for entry in (old, new) if entry is not None)

@@ -105,10 +105,10 @@ def checked(row: DatabaseRow, path: Path, what: str, form: type[T]) -> T:
     Raises:
         StoreError: The checksum is wrong, or a value has another type.
     """
-    *values, found = row
+    *values, stored = row
     try:
         sound = checksum(*values)
-        if sound == found:
+        if sound == stored:
             return msgspec.convert(values, form)
     except (msgspec.MsgspecError, ValueError, TypeError) as fault:
         raise damage(path, f"{what}: {shortened(str(fault))}") from fault
@@ -336,9 +336,9 @@ class Database(Owned):
 
     def _check_small_tables(self) -> None:
         for table in SMALL_TABLES:
-            found = self.row(f"PRAGMA integrity_check({table})")
-            if found != ("ok",):
-                raise damage(self.path, found[0] if found else "check failed")
+            verdict = self.row(f"PRAGMA integrity_check({table})")
+            if verdict != ("ok",):
+                raise damage(self.path, verdict[0] if verdict else "check failed")
 
     def _look(self) -> None:
         """Validate a file opened for reading."""
@@ -371,11 +371,11 @@ class Database(Owned):
     def _check_schema(self) -> None:
         """Refuse a file with other definitions: a view can be endless, a trigger acts by itself."""
         expected = expected_schema(STATEMENTS)
-        found = self.rows(
+        objects = self.rows(
             "SELECT type, name, tbl_name, sql FROM sqlite_master LIMIT ?", [len(expected) + 1]
         )
-        if set(found) != expected:
-            other = sorted({(str(kind), str(name)) for kind, name, *_ in expected ^ set(found)})
+        if set(objects) != expected:
+            other = sorted({(str(kind), str(name)) for kind, name, *_ in expected ^ set(objects)})
             names = ", ".join(f"{kind} {quoted(name)}" for kind, name in other[:5])
             raise StoreError(
                 f"{self.path} has other tables than this program writes ({names}); "

@@ -28,29 +28,29 @@ def event_from(
             type.
     """
     try:
-        known = EventKind(kind)
+        event_kind = EventKind(kind)
     except ValueError:
         raise InputError(
             f"unknown event {quoted(kind)}; events are {', '.join(EventKind)}"
         ) from None
-    if actor is None and known.traits.sense is not Sense.PLACE:
+    if actor is None and event_kind.traits.sense is not Sense.PLACE:
         raise InputError(f"event {quoted(kind)} has no actor; name the agent who did it")
     try:
         typed = msgspec.convert(detail, EventDetail)
     except msgspec.ValidationError as fault:
         raise InputError(f"detail of event {quoted(kind)}: {fault}") from fault
-    given = msgspec.structs.asdict(typed)
-    values = {name: value for name, value in given.items() if value is not msgspec.UNSET}
-    missing = [name for name in known.traits.needs if name not in values]
+    fields = msgspec.structs.asdict(typed)
+    values = {name: value for name, value in fields.items() if value is not msgspec.UNSET}
+    missing = [name for name in event_kind.traits.needs if name not in values]
     if missing:
         raise InputError(f"event {quoted(kind)} lacks the detail {', '.join(missing)}")
-    if "to" in values and known is not EventKind.CHAT:
+    if "to" in values and event_kind is not EventKind.CHAT:
         raise InputError(
             f"event {quoted(kind)} has the detail 'to', which only a whispered chat has"
         )
     if "claims" in values:
-        if known is not EventKind.CHAT and not (
-            known is EventKind.BLOCK_UPDATE and "text" in values
+        if event_kind is not EventKind.CHAT and not (
+            event_kind is EventKind.BLOCK_UPDATE and "text" in values
         ):
             raise InputError(
                 f"event {quoted(kind)} has the detail 'claims', which only a chat and a "
@@ -66,4 +66,4 @@ def event_from(
                 f"event {quoted(kind)} names an unknown agent {quoted(name)}; agents are "
                 f"{known_agents}"
             )
-    return Event(known, actor, values)
+    return Event(event_kind, actor, values)

@@ -328,16 +328,16 @@ def _block_rows(
         row = {**place, "x": x, "y": y, "z": z, "edited": edited}
         yield "blocks", {**row, "block": text}
         if isinstance(block, Sign):
-            told = [claim.plain() for claim in claims.get((x, y, z), ())]
-            yield "signs", {**row, "text": block.text, "claims": told}
+            claim_rows = [claim.plain() for claim in claims.get((x, y, z), ())]
+            yield "signs", {**row, "text": block.text, "claims": claim_rows}
 
 
 def _container_rows(
     place: Mapping[str, Any], contents: Iterable[tuple[Position, Items | None]], edited: str | None
 ) -> Iterator[TableRow]:
     for (x, y, z), items in contents:
-        held = None if items is None else dict(items)
-        yield "containers", {**place, "x": x, "y": y, "z": z, "items": held, "edited": edited}
+        content = None if items is None else dict(items)
+        yield "containers", {**place, "x": x, "y": y, "z": z, "items": content, "edited": edited}
 
 
 def _agent_rows(

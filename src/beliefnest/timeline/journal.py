@@ -103,9 +103,9 @@ def count_of_events(entry: Entry) -> int:
 
 def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:
     """Return the error for an unknown branch; `names` are the existing branches."""
-    known = ", ".join(quoted(name) for name in sorted(names))
+    listed_names = ", ".join(quoted(name) for name in sorted(names))
     return BranchError(
-        f"{path_text(key.path)} has no branch {quoted(key.branch)}; it has {known or 'none'}"
+        f"{path_text(key.path)} has no branch {quoted(key.branch)}; it has {listed_names or 'none'}"
     )
 
 

@@ -193,10 +193,10 @@ class Records:
 
     def add_versions(self, versions: Mapping[str, str]) -> None:
         """Record the versions in use from now on, if they differ from the last known ones."""
-        known = self.versions()
-        now = {**known[-1], **versions}
-        if now != known[-1]:
-            self.put_state("versions", codec.encode([*known[1:], now]))
+        recorded = self.versions()
+        now = {**recorded[-1], **versions}
+        if now != recorded[-1]:
+            self.put_state("versions", codec.encode([*recorded[1:], now]))
 
     def versions(self) -> tuple[Mapping[str, str], ...]:
         """Return the versions at the start of the run, then those after each change."""
@@ -211,8 +211,8 @@ class Records:
     def state(self, name: str) -> bytes | None:
         """Return the bytes last stored under a name; None if there are none."""
         where, what = "meta WHERE name = ?", f"state {quoted(name)}"
-        found = self._database.sound_rows("name, value", where, (name,), what, tuple[str, bytes])
-        return next((value for _, value in found), None)
+        states = self._database.sound_rows("name, value", where, (name,), what, tuple[str, bytes])
+        return next((value for _, value in states), None)
 
     def select(self, path: BeliefPath, branch: str) -> None:
         """Record the branch that a simulator is on."""
@@ -223,8 +223,8 @@ class Records:
     def selected(self) -> dict[BeliefPath, str]:
         """Return the recorded branch of each simulator, in order of paths."""
         in_order, what = "selected ORDER BY path", "the selected branches"
-        found = self._database.sound_rows("path, branch", in_order, (), what, tuple[str, str])
-        return {path_from(path): branch for path, branch in found}
+        selections = self._database.sound_rows("path, branch", in_order, (), what, tuple[str, str])
+        return {path_from(path): branch for path, branch in selections}
 
     def add_program(self, program: ProgramRecord) -> None:
         """Append the record of a program that has ended."""

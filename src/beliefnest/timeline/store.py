@@ -313,8 +313,8 @@ class Journal:
         timeline = self._timeline(key)
         stored, recent = timeline.stored, timeline.recent
         if stored and not (recent and recent[0].tick <= tick):
-            found = self._chunks.entries_until(timeline.number, tick)
-            return stored if found is None else found
+            stored_until = self._chunks.entries_until(timeline.number, tick)
+            return stored if stored_until is None else stored_until
         return stored + bisect_right(recent, tick, key=attrgetter("tick"))
 
     def filtered(
@@ -494,8 +494,8 @@ class Journal:
         # never takes one timeline for another.
         last = self._database.row("SELECT seq FROM sqlite_sequence WHERE name = 'timeline'")
         self._last_number = 0 if last is None else last[0]
-        known = (self._from_row(row, rows) for row in rows.values())
-        return {timeline.info.key: timeline for timeline in known}
+        timelines = (self._from_row(row, rows) for row in rows.values())
+        return {timeline.info.key: timeline for timeline in timelines}
 
     def _from_row(self, row: _TimelineRow, rows: Mapping[int, _TimelineRow]) -> _Timeline:
         fork = None

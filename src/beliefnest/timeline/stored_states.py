@@ -40,7 +40,7 @@ class StoredStates:
 
         None also if somebody else wrote it.
         """
-        found = self._database.sound_rows(
+        checkpoints = self._database.sound_rows(
             "timeline, name, entries, body",
             "keyframe WHERE timeline = ? AND name = ? AND entries <= ? "
             "ORDER BY entries DESC LIMIT 1",
@@ -48,7 +48,7 @@ class StoredStates:
             f"a keyframe of timeline {timeline}",
             tuple[int, str, int, bytes],
         )
-        for *_, place, marked in found:
+        for *_, place, marked in checkpoints:
             body = self._marks().unmarked(name, place, marked)
             return None if body is None else (place, self._chunks.decompressed(body, _LARGEST))
         return None
@@ -65,14 +65,14 @@ class StoredStates:
 
     def body_state(self, timeline: int, entries: int, tick: int) -> bytes | None:
         """Return the internal state stored for exactly this moment; None if there is none."""
-        found = self._database.sound_rows(
+        states = self._database.sound_rows(
             "timeline, entries, tick, state",
             "body_state WHERE timeline = ? AND entries = ? AND tick = ?",
             (timeline, entries, tick),
             f"the state of a body of timeline {timeline}",
             tuple[int, int, int, bytes],
         )
-        return next((self._chunks.decompressed(state, _LARGEST) for *_, state in found), None)
+        return next((self._chunks.decompressed(state, _LARGEST) for *_, state in states), None)
 
     def forget(self, timeline: int) -> None:
         """Remove the entries, checkpoints and states of a timeline, inside a transaction."""

@@ -338,28 +338,28 @@ class _Reader:
         A line that names both halves gives each its own; from then on a half that is named alone
         gives its own, too. Before, it gives the contents of the whole chest.
         """
-        given: _Halves = {}
+        halves_named: _Halves = {}
         for x, y, z, items in lines:
             place = (x, y, z)
             state = changed.get(place, self._grid[self._index(place)])
             name = self._registry.name(state)
             if items is not None and not self._registry.is_container(name):
                 raise InputError(f"the block at {place} is {name}, which holds no items")
-            given.setdefault(self._whole(place, changed), {})[place] = items
+            halves_named.setdefault(self._whole(place, changed), {})[place] = items
         contents: dict[Position, Items | None] = {}
         halves: _Halves = {}
         state_at = self._state_at(changed)
-        for place, named in given.items():
-            parts, known = named, self._halves.get(place, {})
-            if (known or len(named) > 1) and is_double(self._registry, state_at, place):
-                parts = halves[place] = {**known, **named}
-            held = [items for items in parts.values() if items is not None]
+        for place, named in halves_named.items():
+            parts, halves_before = named, self._halves.get(place, {})
+            if (halves_before or len(named) > 1) and is_double(self._registry, state_at, place):
+                parts = halves[place] = {**halves_before, **named}
+            contents_of_halves = [items for items in parts.values() if items is not None]
             name = self._registry.name(state_at(place))
             slots = slots_at(self._registry, state_at, place)
-            for each in held:
+            for each in contents_of_halves:
                 self._items(each, slots, f"a {name}")
-            total = dict(sum(map(Counter, held), Counter()))
-            contents[place] = self._items(total, slots, f"a {name}") if held else None
+            total = dict(sum(map(Counter, contents_of_halves), Counter()))
+            contents[place] = self._items(total, slots, f"a {name}") if contents_of_halves else None
         return contents, halves
 
     def _whole(self, place: Position, changed: Mapping[Position, int]) -> Position:
@@ -401,7 +401,7 @@ class _Reader:
             raise InputError(f"unknown agent {quoted(name)}; list every agent in the first line")
         if line is None:
             return None
-        given = {k: v for k, v in msgspec.structs.asdict(line).items() if v is not None}
+        fields = {k: v for k, v in msgspec.structs.asdict(line).items() if v is not None}
         before = self._agents.get(name)
         if before is None and line.position is None:
             raise InputError(f"agent {quoted(name)} appears without a position; give one")
@@ -420,7 +420,7 @@ class _Reader:
                 raise InputError(
                     f"agent {quoted(name)} has an unknown slot {quoted(slot)}; slots are {slots}"
                 )
-        return AgentState(**given) if before is None else replace(before, **given)
+        return AgentState(**fields) if before is None else replace(before, **fields)
 
     def _inside(self, point: Point) -> None:
         _check(point_fault(point))
@@ -437,10 +437,10 @@ class _Reader:
             self._registry.state_id(detail["block"])
         self._items(detail.get("items", {}), _AGENT_SLOTS, "an agent")
         self._checked(claims_of(event))
-        told = dict(detail)
+        placed = dict(detail)
         if event.kind in AT_CONTAINERS:
-            told["position"] = self._whole(detail["position"], changed)
-        return replace(event, detail=told)
+            placed["position"] = self._whole(detail["position"], changed)
+        return replace(event, detail=placed)
 
     def _check_place(
         self, kind: EventKind, place: Position, changed: Mapping[Position, int]

@@ -180,7 +180,7 @@ class Embodying:
     def _shown(self, path: BeliefPath, standing: _Embodied) -> tuple[Shown, int]:
         """Return the contents of a simulator's exhibit, and the tick of its latest change."""
         reading, registry = self._recording.state(path), self._recording.context.registry
-        contents = {place: held.items for place, held in reading.containers.items()}
+        contents = {place: store.items for place, store in reading.containers.items()}
         blocks = with_chests(registry, self._recording.box, reading.terrain, contents)
         agents = {
             standing.names[name]: AgentState(
@@ -195,7 +195,7 @@ class Embodying:
         }
         shown = Shown(
             blocks.mapped(lambda part: np.where(part < 0, np.int32(standing.unknown), part)),
-            {p: (dict(held.items), held.complete) for p, held in reading.containers.items()},
+            {p: (dict(store.items), store.complete) for p, store in reading.containers.items()},
             {place: text for place, text in reading.texts.items() if place not in contents},
             agents,
         )

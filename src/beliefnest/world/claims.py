@@ -125,8 +125,8 @@ class Claim:
 
     def plain(self) -> dict[str, Any]:
         """Return plain data: `kind`, `place`, and `item`, `agent` or `state`."""
-        given = {"item": self.item, "agent": self.agent, "state": self.state}
-        stated = {key: value for key, value in given.items() if value is not None}
+        parts = {"item": self.item, "agent": self.agent, "state": self.state}
+        stated = {key: value for key, value in parts.items() if value is not None}
         return {"kind": self.kind.value, **stated, "place": self.place}
 
     def check(self, box: Box, agents: Collection[str]) -> None:
@@ -246,18 +246,18 @@ def with_claims(
     Raises:
         InputError: `claims` is not a list of claims, or a claim is not about this world.
     """
-    told: object = claims
-    if isinstance(told, str) or not isinstance(told, Iterable):
-        raise InputError(f"claims are {quoted(told)}; give a list of claims, [] for none")
-    given = tuple(told)
-    for claim in given:
+    listed: object = claims
+    if isinstance(listed, str) or not isinstance(listed, Iterable):
+        raise InputError(f"claims are {quoted(listed)}; give a list of claims, [] for none")
+    all_claims = tuple(listed)
+    for claim in all_claims:
         if not isinstance(claim, Claim):
             raise InputError(
                 f"{quoted(claim)} is no claim; make one with Claim.located, absent, position or "
                 "block"
             )
         claim.check(box, agents)
-    plain = {"claims": tuple(claim.plain() for claim in given)} if given else {}
+    plain = {"claims": tuple(claim.plain() for claim in all_claims)} if all_claims else {}
     return {**detail, **plain}
 
 

@@ -136,8 +136,8 @@ class ByEitherHalf(dict[Position, T]):
         whole: Function that returns the position of the container to which a block belongs.
     """
 
-    def __init__(self, found: Mapping[Position, T], whole: Callable[[Position], Position]) -> None:
-        super().__init__(found)
+    def __init__(self, items: Mapping[Position, T], whole: Callable[[Position], Position]) -> None:
+        super().__init__(items)
         self._whole = whole
 
     def __reduce__(self) -> tuple[type, tuple[dict[Position, T]]]:

@@ -195,30 +195,30 @@ def happens(event: _Event, labels: Mapping[Position, str]) -> str:
         event: The event.
         labels: Names of places.
     """
-    told = {**_MISSING, "place": place_name(event.detail.get("position"), labels)}
+    words = {**_MISSING, "place": place_name(event.detail.get("position"), labels)}
     items = items_words(event.detail.get("items", {}), " and ")
-    told |= {**_told(event), "items": items or "something"}
-    return f"{event.actor or ''}{words_of(event).happens.format_map(told)}".strip()
+    words |= {**_told(event), "items": items or "something"}
+    return f"{event.actor or ''}{words_of(event).happens.format_map(words)}".strip()
 
 
-def happened(event: _Event, actor: str, told: Mapping[str, str]) -> str:
+def happened(event: _Event, actor: str, more: Mapping[str, str]) -> str:
     """Return an event as a sentence in the past tense, without its full stop.
 
     Args:
         event: The event.
         actor: Its actor in words; empty: nobody.
-        told: Words for `thing`, `destination`, `items`, `to` and `other`, as far as it has them.
+        more: Words for `thing`, `destination`, `items`, `to` and `other`, as far as it has them.
     """
-    words = {**_MISSING, **_told(event), "thing": "something", **told}
+    words = {**_MISSING, **_told(event), "thing": "something", **more}
     return f"{actor}{words_of(event).past.format_map(words)}".strip()
 
 
 def did(act: _Event) -> str:
     """Return what was done to the container or block that an explanation is about."""
-    pattern, told = words_of(act).did, _told(act)
-    told["items"] = items_words(act.detail.get("items", {}), " and ", ids=True)
+    pattern, words = words_of(act).did, _told(act)
+    words["items"] = items_words(act.detail.get("items", {}), " and ", ids=True)
     try:
-        return pattern.format_map(told) if pattern else f"did {_plain(act.kind)}"
+        return pattern.format_map(words) if pattern else f"did {_plain(act.kind)}"
     except KeyError:  # The witness did not perceive the detail.
         return f"did {_plain(act.kind)}"
 
@@ -251,16 +251,16 @@ def place_name(place: Any, labels: Mapping[Position, str]) -> str:
 def _told(event: _Event) -> dict[str, Any]:
     """Return the details of an event in words; those that are missing are left out."""
     detail = event.detail
-    told = {key: detail[key] for key in ("to", "block", "other") if key in detail}
+    gaps = {key: detail[key] for key in ("to", "block", "other") if key in detail}
     text = detail.get("text", "")
-    told["text"] = sign_words(text) if event.kind is EventKind.BLOCK_UPDATE else text
-    told["name"] = detail.get("name", "")
-    told["opens"], told["opened"] = ("opens", "opened") if detail.get("open") else ("shuts", "shut")
+    gaps["text"] = sign_words(text) if event.kind is EventKind.BLOCK_UPDATE else text
+    gaps["name"] = detail.get("name", "")
+    gaps["opens"], gaps["opened"] = ("opens", "opened") if detail.get("open") else ("shuts", "shut")
     if detail.get("destination") is not None:
-        told["destination"] = point_words(detail["destination"])
+        gaps["destination"] = point_words(detail["destination"])
     if "powered" in detail:
-        told["power"] = "on" if detail["powered"] else "off"
-    return told
+        gaps["power"] = "on" if detail["powered"] else "off"
+    return gaps
 
 
 def _plain(kind: EventKind) -> str:

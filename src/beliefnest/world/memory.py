@@ -32,12 +32,12 @@ def memory_limit(root: Path = Path("/")) -> MemoryLimit | None:
         root: Folder with `proc` and `sys`.
     """
     swap = _swap(root)
-    found = [
+    limits = [
         *_machine(swap),
         *(MemoryLimit(size + swap, "its container's limit") for size in _cgroups(root)),
         *_shell(),
     ]
-    return min(found, default=None)
+    return min(limits, default=None)
 
 
 def _machine(swap: int) -> Iterator[MemoryLimit]:

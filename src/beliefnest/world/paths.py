@@ -84,8 +84,8 @@ def path_text(path: Iterable[str]) -> str:
 def paths_below(root: BeliefPath, depth: int, agents: Iterable[str]) -> list[BeliefPath]:
     """Return a path and all paths with up to `depth` more agents, short ones first."""
     names = tuple(agents)
-    found = level = [root]
+    paths = level = [root]
     for _ in range(depth):
         level = [(*path, name) for path in level for name in names if path[-1:] != (name,)]
-        found = found + level
-    return found
+        paths = paths + level
+    return paths

@@ -84,11 +84,11 @@ class _Block:
     def values(self, state_id: int) -> tuple[str, ...]:
         """Return the property values of a state, in the order of `properties`."""
         offset = state_id - self.first_state
-        found: list[str] = []
+        chosen: list[str] = []
         for _, values in reversed(self.properties):
             offset, index = divmod(offset, len(values))
-            found.append(values[index])
-        return tuple(reversed(found))
+            chosen.append(values[index])
+        return tuple(reversed(chosen))
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,10 +143,10 @@ class Registry:
         """
         name, chosen = parse_state(text)
         block = self._block(name)
-        known = [property_name for property_name, _ in block.properties]
+        names = [property_name for property_name, _ in block.properties]
         for property_name in chosen:
-            if property_name not in known:
-                has = f"it has {', '.join(known)}" if known else "it has none"
+            if property_name not in names:
+                has = f"it has {', '.join(names)}" if names else "it has none"
                 raise UnknownNameError(
                     f"block {quoted(name)} has no property {quoted(property_name)}; {has}"
                 )

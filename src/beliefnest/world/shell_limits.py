@@ -20,12 +20,12 @@ def low_limits() -> str | None:
     The number of processes (`ulimit -u`) counts all that the user runs. It is named if it is low or
     if no thread can be started now.
     """
-    found = list(_low())
-    if not found and not _threads_start():
-        found.append(f"no further thread can be started ('ulimit -u' is {_value('RLIMIT_NPROC')})")
-    if not found:
+    limits = list(_low())
+    if not limits and not _threads_start():
+        limits.append(f"no further thread can be started ('ulimit -u' is {_value('RLIMIT_NPROC')})")
+    if not limits:
         return None
-    return f"{' and '.join(found)}; raise the limit in this shell, or ask who set it"
+    return f"{' and '.join(limits)}; raise the limit in this shell, or ask who set it"
 
 
 def _low() -> Iterator[str]:

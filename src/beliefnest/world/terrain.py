@@ -125,14 +125,14 @@ class Lattice:
         """
         if self.is_one:
             return [[(0, a, b)] if a < b else [] for a, b in zip(low, high, strict=True)]
-        found = []
+        ranges = []
         for a, b in zip(low, high, strict=True):
             first, last = a + MARGIN, b + MARGIN
             numbers = range(first // SIDE, -(-last // SIDE)) if a < b else range(0)
-            found.append(
+            ranges.append(
                 [(n, max(first - n * SIDE, 0), min(last - n * SIDE, SIDE)) for n in numbers]
             )
-        return found
+        return ranges
 
     def around(self, cells: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
         """Return the numbers of the chunks, margins included, that hold cells or touch them."""
@@ -196,12 +196,12 @@ class Terrain:
             chunk = np.array(grid[:nx], dtype=np.int32, order="C")
             chunk.setflags(write=False)
             return cls(lattice.shape, np.zeros(1, dtype=np.int32), [chunk])
-        known: dict[bytes, int] = {}
+        numbers: dict[bytes, int] = {}
         chunks: list[BlockStates] = []
         rows: list[int] = []
         for layer in _layers(lattice, grid):
             for cube in layer:
-                row = known.setdefault(cube.tobytes(), len(chunks))
+                row = numbers.setdefault(cube.tobytes(), len(chunks))
                 if row == len(chunks):
                     chunk = cube.reshape(SIDE, SIDE, SIDE).copy()
                     chunk.setflags(write=False)
@@ -229,8 +229,8 @@ class Terrain:
         if rows.min() < 0 or rows.max() >= len(states) // VOLUME:
             raise ValueError("some places name cubes that are not there")
         states.setflags(write=False)
-        found = cls(shape, rows, list(states.reshape(-1, SIDE, SIDE, SIDE)))
-        return cls.of(found.dense()) if Lattice.of(shape).is_one else found
+        terrain = cls(shape, rows, list(states.reshape(-1, SIDE, SIDE, SIDE)))
+        return cls.of(terrain.dense()) if Lattice.of(shape).is_one else terrain
 
     @classmethod
     def of_one(cls, grid: BlockStates) -> "Terrain":
@@ -261,23 +261,23 @@ class Terrain:
         if self.is_dense:
             return self.chunks[0][low[0] : high[0], low[1] : high[1], low[2] : high[2]]
         x, y, z = (max(b - a, 0) for a, b in zip(low, high, strict=True))
-        found = np.empty((x, y, z), dtype=np.int32)
+        states = np.empty((x, y, z), dtype=np.int32)
         _, ny, nz = self.lattice.counts
         shift = [MARGIN + part for part in low]
         for (i, a, b), (j, c, d), (k, e, f) in product(*self.lattice.ranges(low, high)):
             at = (i * SIDE - shift[0], j * SIDE - shift[1], k * SIDE - shift[2])
-            found[at[0] + a : at[0] + b, at[1] + c : at[1] + d, at[2] + e : at[2] + f] = (
+            states[at[0] + a : at[0] + b, at[1] + c : at[1] + d, at[2] + e : at[2] + f] = (
                 self.chunks[self.rows[(i * ny + j) * nz + k]][a:b, c:d, e:f]
             )
-        found.setflags(write=False)
-        return found
+        states.setflags(write=False)
+        return states
 
     def at(self, cells: npt.NDArray[np.integer[Any]]) -> BlockStates:
         """Return the states of the cells with some numbers (n,), counted as in a dense array."""
-        found: BlockStates
+        states: BlockStates
         if self.is_dense:
-            found = self.chunks[0].reshape(-1)[cells]
-            return found
+            states = self.chunks[0].reshape(-1)[cells]
+            return states
         (_, ny, nz), (_, high, deep) = self.shape, self.lattice.counts
         i, j, k = (
             part.astype(np.int64) + MARGIN
@@ -286,10 +286,10 @@ class Terrain:
         rows = self.rows[(i // SIDE * high + j // SIDE) * deep + k // SIDE]
         used, places = np.unique(rows, return_inverse=True)
         chunks = np.array([self.chunks[row] for row in used.tolist()], dtype=np.int32)
-        found = chunks.reshape(-1, SIDE, SIDE, SIDE)[
+        states = chunks.reshape(-1, SIDE, SIDE, SIDE)[
             places.reshape(-1), i % SIDE, j % SIDE, k % SIDE
         ]
-        return found
+        return states
 
     def at_indices(self, cells: npt.NDArray[np.integer[Any]]) -> BlockStates:
         """Return the states of the cells with some indices (n, 3)."""
@@ -305,11 +305,11 @@ class Terrain:
     def sampled(self, layers: Layers) -> BlockStates:
         """Return the states of the cells that lie in one of some layers along each axis."""
         x, y, z = layers
-        found = np.empty((len(x), len(y), len(z)), dtype=np.int32)
+        states = np.empty((len(x), len(y), len(z)), dtype=np.int32)
         for first, part in self.slabs():
             wanted = np.flatnonzero((x >= first) & (x < first + len(part)))
-            found[wanted] = part[np.ix_(x[wanted] - first, y, z)]
-        return found
+            states[wanted] = part[np.ix_(x[wanted] - first, y, z)]
+        return states
 
     @cached_property
     def borders(self) -> Layers:
@@ -319,7 +319,7 @@ class Terrain:
         # Numbers of the first and of the last layer of each chunk along each axis; equal ones are
         # equal layers.
         sides = np.full((3, 2, int(np.prod(counts))), -1, dtype=np.int64)
-        known: dict[bytes, int] = {}
+        numbers: dict[bytes, int] = {}
         for chunk, places, inside in self.kinds():
             at = np.unravel_index(places, counts)
             for axis in range(3):
@@ -331,7 +331,7 @@ class Terrain:
                     changed[axis][first + 1 : first + len(layers)] |= differs
                 for side in (0, 1):
                     layer = layers[-side].tobytes()
-                    sides[axis, side, places] = known.setdefault(layer, len(known))
+                    sides[axis, side, places] = numbers.setdefault(layer, len(numbers))
         for axis, parts in enumerate(self.lattice.ranges((0, 0, 0), self.shape)):
             first, last = (np.moveaxis(each.reshape(counts), axis, 0) for each in sides[axis])
             for number, start, _ in parts:
@@ -364,10 +364,10 @@ class Terrain:
     @cached_property
     def states(self) -> tuple[int, ...]:
         """The block states that occur, in order."""
-        found: set[int] = set()
+        states: set[int] = set()
         for chunk, _, inside in self.kinds():
-            found.update(np.unique(chunk[inside]).tolist())
-        return tuple(sorted(found))
+            states.update(np.unique(chunk[inside]).tolist())
+        return tuple(sorted(states))
 
     def kinds(
         self,
@@ -415,15 +415,15 @@ class Terrain:
         firsts = np.full(len(self.chunks) * len(insides), -1, dtype=np.int64)
         # Of several values written to an element, the last one stays: that of the first place.
         firsts[keys[::-1]] = np.arange(len(keys))[::-1]
-        found = np.flatnonzero(firsts >= 0)
+        present = np.flatnonzero(firsts >= 0)
         numbers = np.zeros(len(firsts), dtype=np.int32)
-        known: dict[bytes, int] = {}
+        new_numbers: dict[bytes, int] = {}
         chunks: list[BlockStates] = []
-        for key in found[np.argsort(firsts[found])].tolist():
+        for key in present[np.argsort(firsts[present])].tolist():
             row, kind = divmod(key, len(insides))
             chunk = np.zeros((SIDE, SIDE, SIDE), dtype=np.int32)
             chunk[insides[kind]] = self.chunks[row][insides[kind]]
-            numbers[key] = known.setdefault(chunk.tobytes(), len(chunks))
+            numbers[key] = new_numbers.setdefault(chunk.tobytes(), len(chunks))
             if numbers[key] == len(chunks):
                 chunk.setflags(write=False)
                 chunks.append(chunk)
@@ -466,8 +466,8 @@ class Terrain:
     def count(self, states: Collection[int]) -> int:
         """Return the number of cells with one of some states."""
         wanted = list(states)
-        found = [np.isin(chunk[part], wanted).sum() * len(at) for chunk, at, part in self.kinds()]
-        return int(sum(found))
+        counts = [np.isin(chunk[part], wanted).sum() * len(at) for chunk, at, part in self.kinds()]
+        return int(sum(counts))
 
     def find(self, states: Collection[int]) -> npt.NDArray[np.intp]:
         """Return the indices (n, 3) of the cells with one of some states, in order."""
@@ -475,12 +475,12 @@ class Terrain:
         if self.is_dense:
             return np.argwhere(np.isin(self.chunks[0], wanted, kind="table"))
         masks: npt.NDArray[np.bool_] = np.isin(np.stack(self.chunks), wanted, kind="table")
-        found = [np.empty((0, 3), dtype=np.intp)]
+        offsets = [np.empty((0, 3), dtype=np.intp)]
         has = masks.reshape(len(masks), -1).any(axis=1)
         for number in np.flatnonzero(np.asarray(has)[self.rows]).tolist():
             cells = np.argwhere(masks[self.rows[number]])
-            found.append(cells + np.array(self.lattice.start(number)))
-        return self.lattice.clipped(np.concatenate(found))
+            offsets.append(cells + np.array(self.lattice.start(number)))
+        return self.lattice.clipped(np.concatenate(offsets))
 
     def differing(self, other: "Terrain", counts: Counts | None = None) -> npt.NDArray[np.intp]:
         """Return the indices (n, 3) of the cells in which another terrain of the box differs.
@@ -496,24 +496,24 @@ class Terrain:
             np.array([id(chunk) for chunk in each.chunks], dtype=np.int64)[each.rows]
             for each in (self, other)
         )
-        found = [np.empty((0, 3), dtype=np.intp)]
+        offsets = [np.empty((0, 3), dtype=np.intp)]
         numbers = np.flatnonzero(mine != theirs)
         # Many places have the same pair of chunks, which are compared once.
         pairs = self.rows[numbers].astype(np.int64) * len(other.chunks) + other.rows[numbers]
         each, places = _distinct(pairs, len(self.chunks) * len(other.chunks))
         apart = []
         for pair in each.tolist():
-            held, its = (
+            own, its = (
                 self.chunks[pair // len(other.chunks)],
                 other.chunks[pair % len(other.chunks)],
             )
-            mask = held != its
-            apart.append(np.argwhere(mask if counts is None else mask & counts(held, its)))
+            mask = own != its
+            apart.append(np.argwhere(mask if counts is None else mask & counts(own, its)))
         differs = np.array([len(cells) > 0 for cells in apart], dtype=np.bool_)
         for at in np.flatnonzero(differs[places]).tolist():
             start = self.lattice.start(int(numbers[at]))
-            found.append(apart[places[at]] + np.array(start))
-        return self.lattice.clipped(np.concatenate(found))
+            offsets.append(apart[places[at]] + np.array(start))
+        return self.lattice.clipped(np.concatenate(offsets))
 
     def mapped(
         self, change: Callable[[BlockStates], npt.NDArray[np.signedinteger[Any]]]
@@ -648,15 +648,15 @@ def _distinct(
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """Return the different ones of some numbers below `end`, sorted, and the index of each."""
     if end > _MOST_LISTED + 8 * len(numbers):
-        found, places = np.unique(numbers, return_inverse=True)
-        return found, places.reshape(-1)
+        distinct, places = np.unique(numbers, return_inverse=True)
+        return distinct, places.reshape(-1)
     # Faster than sorting.
     occurs = np.zeros(end, dtype=np.bool_)
     occurs[numbers] = True
-    found = np.flatnonzero(occurs)
+    distinct = np.flatnonzero(occurs)
     table = np.empty(end, dtype=np.int64)
-    table[found] = np.arange(len(found))
-    return found, table[numbers]
+    table[distinct] = np.arange(len(distinct))
+    return distinct, table[numbers]
 
 
 def _layers(

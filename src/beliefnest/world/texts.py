@@ -49,9 +49,9 @@ def fault_of(text: str) -> str | None:
     """
     if len(text) > LONGEST_UTTERANCE:
         return f"a text of {len(text)} characters; at most {LONGEST_UTTERANCE} can be said at once"
-    found = next((character for character in text if _commands(character)), None)
-    if found is not None:
-        return f"a text with {escaped(found)} in it; give one line without control characters"
+    command = next((character for character in text if _commands(character)), None)
+    if command is not None:
+        return f"a text with {escaped(command)} in it; give one line without control characters"
     return None
 
 
@@ -69,12 +69,12 @@ def visible(text: str) -> str:
     """
     if text.isascii() and text.isprintable():
         return text
-    return _HIDDEN.sub(lambda found: _written(found[0]), text)
+    return _HIDDEN.sub(lambda match: _written(match[0]), text)
 
 
 def visible_json(text: str) -> str:
     """Escape hidden characters inside the strings of a JSON text, see `visible`."""
-    return _HIDDEN.sub(lambda found: "\\" + _written(found[0]), text)
+    return _HIDDEN.sub(lambda match: "\\" + _written(match[0]), text)
 
 
 def formula_free(text: str) -> str:

@@ -36,8 +36,8 @@ def items_words(items: Items, joint: str = ", ", *, ids: bool = False, ones: boo
         ones: False to leave out the number 1.
     """
     counts = sorted(items.items())
-    told = [name if n == 1 and not ones else f"{n} {name}" for name, n in counts]
-    return joint.join(told if ids else (each.replace("_", " ") for each in told))
+    words = [name if n == 1 and not ones else f"{n} {name}" for name, n in counts]
+    return joint.join(words if ids else (each.replace("_", " ") for each in words))
 
 
 def things_words(items: Items, unique: Container[str] = ()) -> str:
@@ -81,10 +81,10 @@ def with_the(name: str) -> str:
 
 def contents_words(items: Items, *, complete: bool, ones: bool = True) -> str:
     """Return contents in words, with a mark if there may be more."""
-    told = items_words(items, ones=ones)
+    words = items_words(items, ones=ones)
     if complete:
-        return told or "empty"
-    return f"{told}, more?" if told else "nothing known"
+        return words or "empty"
+    return f"{words}, more?" if words else "nothing known"
 
 
 def told_apart(texts: Sequence[str]) -> tuple[str, ...]:
@@ -116,16 +116,16 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun if number == 1 else many}"
 
 
-def nearest_or_all(name: str, known: Sequence[str], listing: str = "there are") -> str:
+def nearest_or_all(name: str, names: Sequence[str], listing: str = "there are") -> str:
     """Return the end of a message about an unknown name: a similar name, or else all names.
 
     Args:
         name: The unknown name.
-        known: All names that exist, at least one.
+        names: All names that exist, at least one.
         listing: Words before the list of all names.
     """
-    close = difflib.get_close_matches(name, known, n=1)
-    return f"; did you mean {quoted(close[0])}?" if close else f"; {listing} {', '.join(known)}"
+    close = difflib.get_close_matches(name, names, n=1)
+    return f"; did you mean {quoted(close[0])}?" if close else f"; {listing} {', '.join(names)}"
 
 
 def titled(name: str) -> str:

@@ -258,10 +258,10 @@ def _model(
     if not colon:
         raise InputError(f"{quoted(name)} is not complete; give model:MODEL:ORDER")
     number = 2 if order == "omniscient" else order_of(order, name)
-    known = connection or Connection()
+    limited = connection or Connection()
     if query:
-        known = replace(known, answer_limits=settings.answer_limits)
-    model = open_model(model_name, environment, known)
+        limited = replace(limited, answer_limits=settings.answer_limits)
+    model = open_model(model_name, environment, limited)
     kind = OmniscientModelPolicy if order == "omniscient" else ModelPolicy
     return kind(model, number, settings=settings)
 

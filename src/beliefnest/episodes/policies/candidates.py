@@ -48,13 +48,13 @@ def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> I
         goals: Goals of all agents.
         lies: True to include claims that the speaker does not believe.
     """
-    held = sorted(mind.world.containers.items())
+    contents = sorted(mind.world.containers.items())
     for item in items_of(goals):
-        for place, items in held:
+        for place, items in contents:
             if items.get(item, 0):
                 yield Claim.located(item, place)
         if lies:
-            for place, items in held:
+            for place, items in contents:
                 if not items.get(item, 0):
                     yield Claim.located(item, place)
     registry = Registry.load()
@@ -85,8 +85,8 @@ def is_news(
             continue
         view = mind.view((other,))
         if claim.item is not None:
-            known = view.containers.get(claim.cell)
-            if known is None or not known.items.get(claim.item, 0):
+            content = view.containers.get(claim.cell)
+            if content is None or not content.items.get(claim.item, 0):
                 return True
         elif claim.state is not None:
             state = view.terrain[box.index(claim.cell)]
@@ -109,7 +109,7 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
     agents = world.agents
     mine, is_crowd = agents[agent].inventory, len(agents) - 1 > _MOST_PARTNERS
     near = [
-        (at, held) for at, held in sorted(world.containers.items()) if mind.may_reach(agent, at)
+        (at, stored) for at, stored in sorted(world.containers.items()) if mind.may_reach(agent, at)
     ]
     wanted = {fact.store for fact in _facts(goals)}
     named, facts = [*items_of(goals), *_materials(mind, agent, goals)], MindFacts(mind)
@@ -181,7 +181,7 @@ def _materials(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str
     """Return blocks that an agent may need; all blocks if it does not know which."""
     world, registry = mind.world, Registry.load()
     sought = {name for _, name in _sought(mind, goals)}
-    there = {item for held in world.containers.values() for item in held}
+    there = {item for items in world.containers.values() for item in items}
     if agent in world.agents:
         there |= world.agents[agent].inventory.keys()
     blocks = {item for item in there if registry.has_block(item)}

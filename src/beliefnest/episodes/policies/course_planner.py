@@ -252,18 +252,18 @@ class _Planning:
         for _ in range(self._bounds.depth):
             if best.score[0] == REACHED and not best.calls and not best.others:
                 break
-            found = [each for node in beam for each in self._expanded(node)]
-            found.sort(key=lambda node: node.score)
-            tried += found
-            beam = found[: self._bounds.beam]
+            nodes = [each for node in beam for each in self._expanded(node)]
+            nodes.sort(key=lambda node: node.score)
+            tried += nodes
+            beam = nodes[: self._bounds.beam]
             if not beam:
                 break
             if beam[0].score < best.score:
                 best = beam[0]
         calls, reason = best.calls, ""
         if best.score[0] == OPEN:
-            if told := self._telling(mind):
-                calls, reason = (told,), "somebody does not know this, and may plan better with it"
+            if news := self._telling(mind):
+                calls, reason = (news,), "somebody does not know this, and may plan better with it"
             elif not calls and (look := self._exploring(mind)):
                 calls, reason = look, "a wanted item may be there"
         others = {name: tuple(each.performer.calls) for name, each in first.others.items()}
@@ -326,21 +326,21 @@ class _Planning:
     def _guess(self, mind: Imagination, other: str, elapsed: int) -> tuple[Call, ...]:
         """Return the assumed plan of another agent, planned in its assumed belief."""
         order, left = self._order - 1, self._horizon - elapsed
-        known, seen = self._planner.guesses, mind.print_of(other, order)
+        guesses, seen = self._planner.guesses, mind.print_of(other, order)
         # Planners of order 0 do not speak.
         spoken = tuple(sorted(self._planner.spoken.items())) if order else ()
         key = (other, order, left, self._bounds, seen, spoken)
-        if seen is None or key not in known:
+        if seen is None or key not in guesses:
             below = mind.below(other, order)
             plan = self._planner.plan(below, other, order, left, self._bounds.lower())
-            known[key] = plan.calls
-        return known[key]
+            guesses[key] = plan.calls
+        return guesses[key]
 
     def _expanded(self, node: _Node) -> list[_Node]:
         """Return the successors of a node: one for each call that can be done next."""
         if node.reached is not None or node.violated is not None or node.elapsed >= self._horizon:
             return []
-        found = []
+        nodes = []
         for call in self._calls(node.mind):
             if not node.calls and call.program in self._avoided:
                 continue
@@ -351,15 +351,15 @@ class _Planning:
                 continue
             following.calls = (*node.calls, call)
             self._value(following)
-            found.append(following)
-        return found
+            nodes.append(following)
+        return nodes
 
     def _calls(self, mind: Imagination) -> list[Call]:
         goals = list(self._brief.goals.values())
         calls = calls_of(mind, self._agent, [self._goal])
         if self._speaks:
-            told = claims_of_mind(mind, goals, lies=bool(self._opponents))
-            calls += [said(claim) for claim in told if is_news(mind, claim, self._agent)]
+            claims = claims_of_mind(mind, goals, lies=bool(self._opponents))
+            calls += [said(claim) for claim in claims if is_news(mind, claim, self._agent)]
         return calls
 
     def _act(self, node: _Node, mine: Performer) -> None:
@@ -458,13 +458,13 @@ class _Planning:
         """Return a look into the nearest container that may hold a wanted item of unknown place."""
         world = mind.world
         me = world.agents.get(self._agent)
-        known = mind.view().containers
+        contents = mind.view().containers
         wanted = [
             item
             for item in items_of([self._goal])
             if not any(
                 content.items.get(item, 0)
-                for place, content in known.items()
+                for place, content in contents.items()
                 if place not in self._doubted
             )
             and not any(each.inventory.get(item, 0) for each in world.agents.values())
@@ -473,7 +473,7 @@ class _Planning:
             return ()
         unknown = [
             place
-            for place, content in known.items()
+            for place, content in contents.items()
             if not content.complete and place not in self._doubted
         ]
         for place in sorted(unknown, key=lambda at: (_apart(me.position, at), at)):

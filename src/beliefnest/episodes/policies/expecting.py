@@ -92,10 +92,10 @@ class Expecting:
 
     def _suppositions(self, shares: GoalShares) -> Iterator[_Supposition]:
         brief, mind = self._view.brief, self._view.imagine(self._order)
-        found = list(combinations(shares))
-        found = [(share, names) for share, names in found if share >= _LEAST] or found
-        total = math.fsum(share for share, _ in found)
-        for share, names in found:
+        cases = list(combinations(shares))
+        cases = [(share, names) for share, names in cases if share >= _LEAST] or cases
+        total = math.fsum(share for share, _ in cases)
+        for share, names in cases:
             goals = {agent: brief.possible_goals[agent][name] for agent, name in names.items()}
             supposed = brief.supposing(goals)
             planner = Planner(supposed, self._view.spoken)
@@ -179,10 +179,10 @@ def _completed(mind: Imagination, brief: Brief, agent: str, order: int) -> list[
     for item in items_of([goal]):
         world = mind.world
         holders = [*world.containers.values(), *(each.inventory for each in world.agents.values())]
-        if any(held.get(item, 0) for held in holders):
+        if any(items.get(item, 0) for items in holders):
             continue
-        known = mind.view().containers
-        unseen = [at for at, held in known.items() if not held.complete and at not in doubted]
+        contents = mind.view().containers
+        unseen = [at for at, items in contents.items() if not items.complete and at not in doubted]
         wanted = [
             condition.fact.store
             for name, other in brief.goals.items()
@@ -197,9 +197,9 @@ def _completed(mind: Imagination, brief: Brief, agent: str, order: int) -> list[
 
 def _with_item(mind: Imagination, place: Position, item: str) -> Imagination:
     made = mind.fork()
-    held = {at: dict(items) for at, items in made.world.containers.items()}
-    held[place] = {**held.get(place, {}), item: 1}
-    made.world.set_state(replace(made.world.snapshot(), containers=held))
+    contents = {at: dict(items) for at, items in made.world.containers.items()}
+    contents[place] = {**contents.get(place, {}), item: 1}
+    made.world.set_state(replace(made.world.snapshot(), containers=contents))
     return made
 
 

@@ -80,7 +80,7 @@ def posterior(view: AgentView, order: int, bounds: SearchBounds = USUAL) -> Goal
         bounds: Limits of the planner that explains traces.
     """
     start = view.imagine(order, tick=0)
-    found = {}
+    shares_of = {}
     for other, prior in uniform(view.brief).items():
         goals = view.brief.possible_goals[other]
         first = start.view((other,) if order else ())
@@ -95,8 +95,8 @@ def posterior(view: AgentView, order: int, bounds: SearchBounds = USUAL) -> Goal
                 is_wanted = any(item in one.fact.items for one in goal.reach)
                 weights[name] *= _WANTED if is_wanted else 1 - _WANTED
         total = sum(weights.values())
-        found[other] = {name: weight / total for name, weight in weights.items()}
-    return _by_traces(view, start, order, bounds, found)
+        shares_of[other] = {name: weight / total for name, weight in weights.items()}
+    return _by_traces(view, start, order, bounds, shares_of)
 
 
 def _by_traces(
@@ -152,13 +152,13 @@ def _pursued(
 
 
 def _is_missed(item: str, state: State) -> bool:
-    held = any(agent.inventory.get(item, 0) for agent in state.agents.values())
-    return not held and not _is_somewhere(item, state)
+    is_carried = any(agent.inventory.get(item, 0) for agent in state.agents.values())
+    return not is_carried and not _is_somewhere(item, state)
 
 
 def _is_somewhere(item: str, state: State | NodeView) -> bool:
     dropped = any(each.name == item for each in state.items.values())
-    return dropped or any(held.items.get(item, 0) for held in state.containers.values())
+    return dropped or any(content.items.get(item, 0) for content in state.containers.values())
 
 
 def _in_reach(place: Position, state: State) -> list[Position]:
@@ -170,8 +170,8 @@ def _in_reach(place: Position, state: State) -> list[Position]:
     near = [at for at in around if at in box and met.is_met(at)]
     cells = np.array([box.index(at) for at in near], dtype=np.int64).reshape(-1, 3)
     stands = Floor(Registry.load(), blocks).stands(cells)
-    found = [at for at, is_standing in zip(near, stands, strict=True) if is_standing]
-    return [at for at in found if can_use(box, blocks, eye_in(at), place)]
+    standable = [at for at, is_standing in zip(near, stands, strict=True) if is_standing]
+    return [at for at in standable if can_use(box, blocks, eye_in(at), place)]
 
 
 def _by_deeds(
@@ -208,15 +208,15 @@ def _by_deeds(
         other, wanted, rows, prior=weights, rationality=_RATIONALITY, diagonal=True, stays=False
     )
     try:
-        found = view.infer(model, *below).posterior()
+        shares_by_goal = view.infer(model, *below).posterior()
     except TooLargeError:
         raise
     except InputError:
         # It cannot reach any of the goals, so its course is no evidence.
         return prior
-    shares = found.sum(axis=(0, 1, 3))
-    known = sum(prior[name] for name in expressed)
-    inferred = dict(zip(expressed, (shares / shares.sum() * known).tolist(), strict=True))
+    shares = shares_by_goal.sum(axis=(0, 1, 3))
+    expressible = sum(prior[name] for name in expressed)
+    inferred = dict(zip(expressed, (shares / shares.sum() * expressible).tolist(), strict=True))
     return {name: inferred.get(name, share) for name, share in prior.items()}
 
 
@@ -234,9 +234,9 @@ def _judged_claims(view: AgentView, speaker: str) -> Iterator[bool]:
     """Yield True or False for each claim of a speaker that proved true or false."""
     for tick, who, claim in view.claims:
         if who == speaker and claim.kind in (ClaimKind.LOCATED, ClaimKind.ABSENT):
-            held = _was_in(view.state, str(claim.item), claim.cell, tick)
-            if held is not None:
-                yield held == (claim.kind is ClaimKind.LOCATED)
+            was_there = _was_in(view.state, str(claim.item), claim.cell, tick)
+            if was_there is not None:
+                yield was_there == (claim.kind is ClaimKind.LOCATED)
 
 
 def _was_in(state: State, item: str, place: Position, tick: int) -> bool | None:
@@ -246,7 +246,7 @@ def _was_in(state: State, item: str, place: Position, tick: int) -> bool | None:
             continue
         if item in event.detail.get("items", {}):
             return event.kind is EventKind.GET_ITEM_FROM_CHEST
-    held = state.containers.get(place)
-    if held is None or not held.complete or held.basis.source is Source.HEARD:
+    content = state.containers.get(place)
+    if content is None or not content.complete or content.basis.source is Source.HEARD:
         return None
-    return bool(held.items.get(item, 0))
+    return bool(content.items.get(item, 0))

@@ -87,14 +87,14 @@ class Rule:
 
     def _deeds(self, view: AgentView, mind: Imagination) -> Iterator[Call]:
         goals = _goals_of(view)
-        held = mind.world.agents[view.agent].inventory
+        inventory = mind.world.agents[view.agent].inventory
         for item in items_of(goals):
             source = None
-            if not held.get(item, 0) and (sources := places_of(view, mind, item)):
+            if not inventory.get(item, 0) and (sources := places_of(view, mind, item)):
                 source = chosen(self.take, sources, view)
                 yield Call("getItemFromChest", (source, {item: 1}))
             sinks = _sinks(view, mind, goals, item, source)
-            if sinks and (source is not None or held.get(item, 0)):
+            if sinks and (source is not None or inventory.get(item, 0)):
                 yield Call("depositItemIntoChest", (chosen(self.put, sinks, view), {item: 1}))
         for skill in ("turnOnLever", "goToPosition"):
             calls = [call for call in calls_of(mind, view.agent, goals) if call.skill == skill]
@@ -113,8 +113,8 @@ def rule_of(text: str) -> Rule:
     keys, _, tells = text.partition(":")
     take, _, put = keys.partition("+")
     for key, others in ((take, KEYS), (put or "nearest", (*KEYS, _PLAN))):
-        known, _, rest = key.partition("-")
-        is_known = key in others or (known in ("nearest", "farthest") and bool(rest))
+        order, _, rest = key.partition("-")
+        is_known = key in others or (order in ("nearest", "farthest") and bool(rest))
         if not is_known and not _weights(key):
             raise UnknownNameError(f"there is no rule {quoted(key)}; {_FORMS}")
     if tells not in _TELLS:
@@ -127,9 +127,9 @@ def rule_of(text: str) -> Rule:
 def places_of(view: AgentView, mind: Imagination, item: str) -> list[Position]:
     """Return the containers in reach that hold an item, or else those that may hold it."""
     near = [at for at in sorted(mind.world.containers) if mind.may_reach(view.agent, at)]
-    known = view.state.containers
-    holds = [at for at in near if at in known and known[at].items.get(item, 0)]
-    return holds or [at for at in near if at not in known or not known[at].complete]
+    contents = view.state.containers
+    holds = [at for at in near if at in contents and contents[at].items.get(item, 0)]
+    return holds or [at for at in near if at not in contents or not contents[at].complete]
 
 
 def _sinks(
@@ -167,7 +167,7 @@ def _score(key: str, view: AgentView) -> Callable[[Position], float] | None:
     """Return the function of a place whose least value a key chooses; None: a draw."""
     if key == "any":
         return None
-    known, _, name = key.partition("-")
+    order, _, name = key.partition("-")
     apart = _apart(_partner(view) if key == "copy" else name or view.agent, view)
     scores: Mapping[str, Callable[[Position], float]] = {
         "last": lambda place: -float(np.dot(place, (1e6, 1e3, 1))),
@@ -176,7 +176,7 @@ def _score(key: str, view: AgentView) -> Callable[[Position], float] | None:
         "nearest": apart,
         "farthest": lambda place: -apart(place),
     }
-    return scores.get(key) or scores.get(known) or (lambda place: 0.0)
+    return scores.get(key) or scores.get(order) or (lambda place: 0.0)
 
 
 def _apart(name: str, view: AgentView) -> Callable[[Position], float]:
@@ -191,15 +191,15 @@ def _partner(view: AgentView) -> str:
     """Return the nearest other agent of known place; the agent itself if there is none."""
     others = [name for name in view.brief.agents if name != view.agent]
     feet = view.state.agents[view.agent].position
-    known = [n for n in others if view.state.agents[n].position is not None]
-    if feet is None or not known:
+    names = [n for n in others if view.state.agents[n].position is not None]
+    if feet is None or not names:
         return view.agent
-    return min(known, key=lambda name: math.dist(feet, view.state.agents[name].position or feet))
+    return min(names, key=lambda name: math.dist(feet, view.state.agents[name].position or feet))
 
 
 def _seen_at(place: Position, view: AgentView) -> float:
-    held = view.state.containers.get(place)
-    basis = held.basis if held is not None else view.state.blocks.basis(place)
+    content = view.state.containers.get(place)
+    basis = content.basis if content is not None else view.state.blocks.basis(place)
     return -1.0 if basis is None else float(basis.observed_at)
 
 

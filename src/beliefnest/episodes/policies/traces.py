@@ -49,14 +49,14 @@ def likelihoods_of_traces(
         bounds: Limits of the planner.
         supposed: Names of the goals of other agents, by agent.
     """
-    found = _Found(view.state, start)
-    places = found.changed(found.now)
-    if not found.mismatches([found.first], places):
+    traces = _Found(view.state, start)
+    places = traces.changed(traces.now)
+    if not traces.mismatches([traces.first], places):
         return [1.0] * len(supposed)
     courses = [_course(view, start, order, bounds, goals) for goals in supposed]
-    places |= {place for course in courses for each in course for place in found.changed(each)}
+    places |= {place for course in courses for each in course for place in traces.changed(each)}
     odds = _MISTAKEN / (1 - _MISTAKEN)
-    return [odds ** found.mismatches(course, places) for course in courses]
+    return [odds ** traces.mismatches(course, places) for course in courses]
 
 
 class _Found:
@@ -72,9 +72,9 @@ class _Found:
     """
 
     def __init__(self, state: State, start: Imagination) -> None:
-        self._state, known = state, start.view()
-        self._known = known.containers
-        self.first = _Moment(start.tick, known.terrain, _items(known.containers))
+        self._state, first_view = state, start.view()
+        self._known = first_view.containers
+        self.first = _Moment(start.tick, first_view.terrain, _items(first_view.containers))
         self.now = _Moment(state.tick, state.blocks.terrain, _items(state.containers))
         self._watched = {
             event.detail.get("position")
@@ -85,15 +85,17 @@ class _Found:
     def changed(self, moment: _Moment) -> set[Position]:
         """Return the places at which a moment differs from the agent's first belief."""
         first, (x, y, z) = self.first.blocks, self._state.box.low
-        differ = first.differing(moment.blocks, lambda held, _: held >= 0)
+        differ = first.differing(moment.blocks, lambda there, _: there >= 0)
         blocks = {
             (x + i, y + j, z + k)
             for i, j, k in differ.tolist()
             # The upper half of a door moves with the lower one.
             if _half(first[i, j, k]) != "upper"
         }
-        held = moment.containers
-        return blocks | {at for at, items in self.first.containers.items() if held.get(at) != items}
+        there = moment.containers
+        return blocks | {
+            at for at, items in self.first.containers.items() if there.get(at) != items
+        }
 
     def mismatches(self, course: Sequence[_Moment], places: Collection[Position]) -> int:
         """Return the number of blocks and contents that differ from a course."""
@@ -111,15 +113,15 @@ class _Found:
         return then != self.now.blocks[index]
 
     def _content_differs(self, course: Sequence[_Moment], place: Position) -> bool:
-        found, known = self._state.containers.get(place), self._known.get(place)
-        if found is None or known is None or not found.complete:
+        now, before = self._state.containers.get(place), self._known.get(place)
+        if now is None or before is None or not now.complete:
             return False
-        if found.basis.source not in _PERCEIVED:
+        if now.basis.source not in _PERCEIVED:
             return False
-        then = _at(course, found.basis.observed_at).containers.get(place, {})
+        then = _at(course, now.basis.observed_at).containers.get(place, {})
         # For a container with unknown contents, count only known items and known changes.
-        names = found.items.keys() | then.keys() if known.complete else known.items.keys() | then
-        return any(found.items.get(name, 0) != then.get(name, 0) for name in names)
+        names = now.items.keys() | then.keys() if before.complete else before.items.keys() | then
+        return any(now.items.get(name, 0) != then.get(name, 0) for name in names)
 
 
 def _course(
@@ -153,8 +155,8 @@ def _course(
 
 
 def _moment(mind: Imagination, tick: int) -> _Moment:
-    held = {place: dict(items) for place, items in mind.world.containers.items()}
-    return _Moment(tick, mind.world.terrain, held)
+    contents = {place: dict(items) for place, items in mind.world.containers.items()}
+    return _Moment(tick, mind.world.terrain, contents)
 
 
 def _at(course: Sequence[_Moment], tick: int) -> _Moment:
@@ -163,7 +165,7 @@ def _at(course: Sequence[_Moment], tick: int) -> _Moment:
 
 
 def _items(containers: Mapping[Position, ContainerBelief]) -> dict[Position, Items]:
-    return {place: held.items for place, held in containers.items()}
+    return {place: content.items for place, content in containers.items()}
 
 
 def _half(state: int) -> str:

@@ -35,7 +35,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     full = [(near, 1, row) for row in chance.sample(range(1, 9), chests - 1)]
     empty, unopened = (far, 1, chance.randint(1, 8)), full[0]
     contents = {**{place: {item: 1} for place in full}, empty: {}}
-    known = belief("/**", {place: {} for place in full if place != unopened})
+    common = belief("/**", {place: {} for place in full if place != unopened})
     unknown = belief("/**", {unopened: {}, empty: {}}, complete=False)
     eve, glass = booths(["eve"], 4)
     start = reach + (2 if near > reach else -2)
@@ -61,7 +61,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
             },
             "perception": {"max_visible_distance": 64, "testimony": "accept"},
             "initial_beliefs": [
-                {**known, "containers": known["containers"] + unknown["containers"]},
+                {**common, "containers": common["containers"] + unknown["containers"]},
                 belief("/eve", contents),
             ],
         },

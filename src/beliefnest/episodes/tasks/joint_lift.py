@@ -64,8 +64,8 @@ def instance(chance: random.Random, far: int, lifts: int, agents: int) -> dict[s
             "perception": {"max_visible_distance": 64},
             "static_blocks": [FLOOR, WALL, "oak_door"],
             "initial_beliefs": [
-                {"path": path, "blocks": [_lever(place) for place in known], "agents": feet}
-                for path, known in (("/anne", levers), ("/**", sites[shown]))
+                {"path": path, "blocks": [_lever(place) for place in places], "agents": feet}
+                for path, places in (("/anne", levers), ("/**", sites[shown]))
             ],
         },
         "goal": {

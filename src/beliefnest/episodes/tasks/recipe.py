@@ -37,11 +37,11 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     wanted = {"anne": items[:2], "bob": items[2:]}
     common: dict[Position, dict[str, int]] = {}
     secret: dict[str, dict[Position, dict[str, int]]] = {}
-    for cook, (known, hidden) in wanted.items():
+    for cook, (own, hidden) in wanted.items():
         one = chance.choice(places)
         # Neither at the same end nor opposite: there one looks next who is not told.
         other = chance.choice([at for at in places if at[0] != one[0] and at[2] != one[2]])
-        common[_of(cook, one)] = {known: 1}
+        common[_of(cook, one)] = {own: 1}
         secret[cook] = {_of(cook, other): {hidden: 1}}
     full = {**common, **secret["anne"], **secret["bob"]}
     onlookers = _ONLOOKERS[: agents - len(_COOKS)]

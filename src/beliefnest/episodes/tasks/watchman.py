@@ -88,11 +88,11 @@ def _beliefs(
     nothing: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in contents}
     # Watchmen also attribute this belief about the spy to one another.
     pairs = [f"{one}/{other}" for one, other in itertools.permutations(watchmen, 2)]
-    known = [f"spy/{name}" for name in watchmen]
+    spied = [f"spy/{name}" for name in watchmen]
     return [
         belief("/**", contents),
         *(
             belief(f"/{path}/spy/**", nothing, complete=False)
-            for path in (*watchmen, *known, *pairs)
+            for path in (*watchmen, *spied, *pairs)
         ),
     ]

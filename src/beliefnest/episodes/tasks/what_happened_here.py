@@ -67,7 +67,7 @@ def instance(chance: random.Random, reach: int) -> dict[str, Any]:
         "scenario": {
             "name": "what-happened-here",
             **hall(width, _SOUTH + 5, _rooms(width, reach, doors)),
-            "containers": [chest(place, held) for place, held in contents.items()],
+            "containers": [chest(place, items) for place, items in contents.items()],
             "agents": {
                 **{
                     name: {
@@ -83,8 +83,8 @@ def instance(chance: random.Random, reach: int) -> dict[str, Any]:
                 {
                     "path": "/**",
                     "containers": [
-                        {"at": list(place), "items": held, "complete": place == vault}
-                        for place, held in contents.items()
+                        {"at": list(place), "items": items, "complete": place == vault}
+                        for place, items in contents.items()
                     ],
                 }
             ],

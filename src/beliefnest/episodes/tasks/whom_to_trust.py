@@ -47,9 +47,9 @@ def instance(chance: random.Random, reach: int) -> dict[str, Any]:
         eve["eve"]["position"] = [reach + 0.5, 1, _CORRIDOR + 0.5]
         blocks = [wall((0, 1, _CORRIDOR - 1), (width, 3, _CORRIDOR - 1), "glass")]
     # She claims what is the case if she helps, and the opposite if she deceives.
-    told = [] if acts else [("apple", near[not helps])]
-    told.append((treasure, far[not helps]))
-    claims = ", ".join(f"located('{item}', new Vec3{place})" for item, place in told)
+    claimed = [] if acts else [("apple", near[not helps])]
+    claimed.append((treasure, far[not helps]))
+    claims = ", ".join(f"located('{item}', new Vec3{place})" for item, place in claimed)
     return {
         "description": (
             f"Bob wants an apple and the {treasure}. Eve has told him where the {treasure} is; she "

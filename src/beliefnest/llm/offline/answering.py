@@ -39,11 +39,11 @@ def answer_question(question: str, text: str, reading: PromptReading) -> str:
     if "sign" in singular(question):
         names, reason = _sign(question, reading)
     else:
-        found = _found(question, reading)
-        names, reason = ([], "") if found is None else (_names(found[0], reading), found[1])
+        place = _found(question, reading)
+        names, reason = ([], "") if place is None else (_names(place[0], reading), place[1])
     if not names:
-        told = reading.position or reading.chests or reading.players or reading.signs
-        return _said(_NOT_KNOWN, reason or (_NOTHING if told else _NO_TABLE))
+        rows = reading.position or reading.chests or reading.players or reading.signs
+        return _said(_NOT_KNOWN, reason or (_NOTHING if rows else _NO_TABLE))
     options = [option for _, option in _OPTION.findall(text.rpartition("Options:")[2])]
     chosen = [option for option in options if any(_same(option, name) for name in names)]
     if options and len(chosen) != 1:
@@ -63,11 +63,11 @@ def _sign(question: str, reading: PromptReading) -> tuple[list[str], str]:
 
 def _found(question: str, reading: PromptReading) -> tuple[Point, str] | None:
     asked = set(singular(question))
-    named = {item for held in reading.chests.values() for item in held}
+    named = {item for stored in reading.chests.values() for item in stored}
     items = [item for item in sorted(named) if set(singular(item)) <= asked]
     if items:
         item = match_item(items[-1], named) or items[-1]
-        holding = [chest for chest, held in reading.chests.items() if held.get(item)]
+        holding = [chest for chest, stored in reading.chests.items() if stored.get(item)]
         return (holding[0], f"{_text(holding[0])} holds {item}.") if len(holding) == 1 else None
     mentioned = [word for word in words(question) if match_name(word, reading.players) is not None]
     for word in reversed(mentioned):

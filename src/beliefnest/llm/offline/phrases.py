@@ -24,12 +24,12 @@ def match_item(phrase: str, names: Iterable[str]) -> str | None:
     That is the item with the same words, or else the only item that ends with them: "iron
     ingots" means `iron_ingot`; "pickaxe" means `iron_pickaxe` if no other item ends so.
     """
-    known = sorted(set(names))
+    candidates = sorted(set(names))
     wanted = singular(phrase)
-    exact = [name for name in known if singular(name) == wanted]
+    exact = [name for name in candidates if singular(name) == wanted]
     if exact:
         return exact[0]
-    ending = [name for name in known if wanted and singular(name)[-len(wanted) :] == wanted]
+    ending = [name for name in candidates if wanted and singular(name)[-len(wanted) :] == wanted]
     return ending[0] if len(ending) == 1 else None
 
 
@@ -40,12 +40,12 @@ def match_name(phrase: str, names: Iterable[str]) -> str | None:
     contained in the phrase: "ice cream seller" means `ice_cream_seller`, `IceCreamSeller` or
     `seller`.
     """
-    known = sorted(set(names))
+    candidates = sorted(set(names))
     wanted = [word for word in words(phrase) if word not in _ARTICLES] or list(words(phrase))
-    for name in known:
+    for name in candidates:
         if "".join(words(name)) == "".join(wanted):
             return name
-    shared = [name for name in known if words(name) and _within(set(words(name)), set(wanted))]
+    shared = [name for name in candidates if words(name) and _within(set(words(name)), set(wanted))]
     return shared[0] if len(shared) == 1 else None
 
 
@@ -58,15 +58,15 @@ def place_named_last(text: str, places: Mapping[str, Point]) -> Point | None:
 
     Places after "from", "leave" or "not" are skipped.
     """
-    found: list[tuple[int, Point]] = []
+    mentions: list[tuple[int, Point]] = []
     for name, point in places.items():
         # Match short names with their case: the name "A" is not the article "a".
         flags = re.IGNORECASE if len(name) > 2 else re.NOFLAG
         for match in re.finditer(rf"\b{re.escape(name)}\b", text, flags):
             if not _speaks_of_leaving(words(text[: match.start()])):
-                found.append((match.start(), point))
-    found += [(len(text), point) for point in points_in(text)]
-    return max(found, key=lambda each: each[0])[1] if found else None
+                mentions.append((match.start(), point))
+    mentions += [(len(text), point) for point in points_in(text)]
+    return max(mentions, key=lambda each: each[0])[1] if mentions else None
 
 
 def _speaks_of_leaving(before: Sequence[str]) -> bool:

@@ -108,8 +108,8 @@ def _get(wanted: _Wanted, reading: PromptReading) -> str:
 
 
 def _item_in(chests: Sequence[Point], wanted: _Wanted, reading: PromptReading) -> str | None:
-    held = [name for chest in chests for name in reading.chests[chest]]
-    return match_item(wanted.phrase, held)
+    items = [name for chest in chests for name in reading.chests[chest]]
+    return match_item(wanted.phrase, items)
 
 
 def _help(phrase: str, reading: PromptReading) -> str | None:
@@ -137,9 +137,9 @@ def _help(phrase: str, reading: PromptReading) -> str | None:
 
 def _wish(player: str, reading: PromptReading) -> _Wanted | None:
     """Return the wish of a player, from its task or its own words."""
-    told = reading.others_tasks.get(player)
-    if told is not None:
-        return _wanted(told.rstrip(".!? "))
+    their_task = reading.others_tasks.get(player)
+    if their_task is not None:
+        return _wanted(their_task.rstrip(".!? "))
     for heard in reversed(reading.chat):
         match = _WISH.fullmatch(heard.text) if heard.speaker == player else None
         if match is not None:
@@ -149,8 +149,8 @@ def _wish(player: str, reading: PromptReading) -> _Wanted | None:
 
 def _chests_meant(source: str | None, reading: PromptReading) -> list[Point]:
     """Return the chest whose position the task gives, or all known chests."""
-    given = points_in(source or "")
-    meant = [chest for chest in reading.chests if chest in given]
+    named = points_in(source or "")
+    meant = [chest for chest in reading.chests if chest in named]
     return meant or list(reading.chests)
 
 
@@ -180,9 +180,9 @@ def _takings(
 
 def _go(phrase: str, reading: PromptReading) -> str | None:
     """Return a program that goes to the place or player of a phrase; None if it is unknown."""
-    given = points_in(phrase)
-    if given:
-        return program_texts.go_to(given[-1])
+    named = points_in(phrase)
+    if named:
+        return program_texts.go_to(named[-1])
     player = match_name(phrase, reading.players)
     place = match_name(phrase, reading.places)
     if place is not None and (player is None or len(words(place)) > len(words(player))):

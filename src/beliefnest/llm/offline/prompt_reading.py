@@ -87,13 +87,13 @@ def read_prompt(text: str) -> PromptReading:
     sections = _sections(text)
     chat = _chat(sections.get("Chat log", []))
     places = _places(sections.get("Places", []), text)
-    told = {"Chest", "Containers"} & sections.keys()
+    has_chests = {"Chest", "Containers"} & sections.keys()
     chests = _chests(sections.get("Chest", [])) | _containers(sections.get("Containers", []))
     here = points_in("\n".join(sections.get("Position", [])))
     return PromptReading(
         task=_task(text),
         position=here[0] if here else None,
-        chests=chests if told else _remembered(text, chat, places),
+        chests=chests if has_chests else _remembered(text, chat, places),
         players=_players(sections["Other players"])
         if "Other players" in sections
         else _seen_players(text),
@@ -134,12 +134,12 @@ def _task(text: str) -> str:
     starts = [index for index, line in enumerate(lines) if _TASK.match(line)]
     if not starts:
         return ""
-    found = []
+    task_lines = []
     for line in lines[starts[-1] :]:
         if not line.strip():
             break
-        found.append(line.strip())
-    return " ".join(found).removeprefix("Task:").strip()
+        task_lines.append(line.strip())
+    return " ".join(task_lines).removeprefix("Task:").strip()
 
 
 def _chests(lines: Sequence[str]) -> dict[Point, dict[str, int]]:
@@ -191,10 +191,10 @@ def _players(lines: Sequence[str]) -> dict[str, Point | None]:
     if not isinstance(value, dict):
         return {}
     players: dict[str, Point | None] = {}
-    for name, told in value.items():
-        where = told.get("position") if isinstance(told, dict) else None
-        found = points_in(str(where))
-        players[name] = found[0] if found else None
+    for name, entry in value.items():
+        where = entry.get("position") if isinstance(entry, dict) else None
+        points = points_in(str(where))
+        players[name] = points[0] if points else None
     return players
 
 
@@ -224,25 +224,25 @@ def _remembered(
 
 def _observe(row: re.Match[str], chests: dict[Point, dict[str, int]]) -> None:
     at, items = points_in(row[3])[0], _items(row[7])
-    held = chests.setdefault(at, {})
+    stored = chests.setdefault(at, {})
     if row[2] in ("assumed", "inside"):
-        held.clear()
+        stored.clear()
     sign = -1 if row[2] == "getItemFromChest" else 1
     for name, count in items.items():
-        held[name] = max(0, held.get(name, 0) + sign * count)
+        stored[name] = max(0, stored.get(name, 0) + sign * count)
 
 
 def _believe(text: str, chests: dict[Point, dict[str, int]], places: Mapping[str, Point]) -> None:
     for name, at in places.items():
-        told = re.search(
+        match = re.search(
             rf"(?:^|\b(?:the|a|an) )([a-z ]+?) is (?:now )?in (?:the )?{re.escape(name)}\b",
             text,
             re.IGNORECASE,
         )
-        if told is not None:
-            item = re.sub(r"^(?:the|an?) ", "", told[1].lower()).replace(" ", "_")
-            for held in chests.values():
-                held.pop(item, None)
+        if match is not None:
+            item = re.sub(r"^(?:the|an?) ", "", match[1].lower()).replace(" ", "_")
+            for items in chests.values():
+                items.pop(item, None)
             chests.setdefault(at, {})[item] = 1
 
 

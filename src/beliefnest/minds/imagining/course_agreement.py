@@ -108,8 +108,8 @@ class Agreement:
         if not glimpse.is_new and percept.tick != glimpse.tick:
             return None
         deeds = percept.deeds if percept.tick == glimpse.tick else ()
-        found = self._misfit(course, glimpse, number)
-        return _DEEDS if found is None and not self._deeds_fit(glimpse, percept, deeds) else found
+        reason = self._misfit(course, glimpse, number)
+        return _DEEDS if reason is None and not self._deeds_fit(glimpse, percept, deeds) else reason
 
     def misfit_within(self, course: Course, glimpses: Sequence[Glimpse], tick: int) -> str | None:
         """Return what differs from the percept of a tick, at all of some ticks; None: nothing."""
@@ -121,12 +121,12 @@ class Agreement:
         mine = {deed for deed in percept.deeds if deed[1] in self.witness.agents}
         if not mine <= seen:
             return _DEEDS
-        found: str | None = None
+        reason: str | None = None
         for glimpse in glimpses:
-            found = self._misfit(course, glimpse, number)
-            if found is None:
+            reason = self._misfit(course, glimpse, number)
+            if reason is None:
                 break
-        return found
+        return reason
 
     def _misfit(self, course: Course, glimpse: Glimpse, number: int) -> str | None:
         """Return what facts of a course at a tick could not give a percept; None: all could."""
@@ -163,18 +163,18 @@ class Agreement:
 
     def _blocks_fit(self, grid: bytes, blocks: Terrain, number: int) -> bool:
         key = (grid, number)
-        found = self._blocks.get(key)
-        if found is None:
+        fits = self._blocks.get(key)
+        if fits is None:
             percept, keep = self.witness.percepts[number], self._keep[number]
             if percept.known is None:
                 there = blocks.at(percept.cells[keep])
-                found = bool(np.array_equal(there, percept.states[keep]))
+                fits = bool(np.array_equal(there, percept.states[keep]))
             else:
-                differs = percept.known.differing(blocks, lambda known, _: known >= 0)
+                differs = percept.known.differing(blocks, lambda seen, _: seen >= 0)
                 cells = np.ravel_multi_index(tuple(differs.T), blocks.shape)
-                found = self.witness.ignored.issuperset(cells.tolist())
-            self._blocks[key] = found
-        return found
+                fits = self.witness.ignored.issuperset(cells.tolist())
+            self._blocks[key] = fits
+        return fits
 
     def _contents_fit(self, course: Course, glimpse: Glimpse, percept: Percept) -> bool:
         witness = self.witness
@@ -229,26 +229,26 @@ class Agreement:
             return True
         eye = _eye(glimpse, owner)
         key = (grid, *eye, feet)
-        found = self._sees.get(key)
-        if found is None:
+        sees = self._sees.get(key)
+        if sees is None:
             geometry = self._geometry(grid, glimpse.blocks)
-            found = self._sees[key] = bool(geometry.sees_agents(*eye, [feet])[0])
-        return found
+            sees = self._sees[key] = bool(geometry.sees_agents(*eye, [feet])[0])
+        return sees
 
     def _grid(self, blocks: Terrain) -> bytes:
-        known = self._grids.get(id(blocks))
-        if known is None or known[0] is not blocks:
+        kept = self._grids.get(id(blocks))
+        if kept is None or kept[0] is not blocks:
             while len(self._grids) >= _MOST_GRIDS:
                 del self._grids[next(iter(self._grids))]
-            known = self._grids[id(blocks)] = (blocks, blocks.key)
-        return known[1]
+            kept = self._grids[id(blocks)] = (blocks, blocks.key)
+        return kept[1]
 
     def _geometry(self, grid: bytes, blocks: Terrain) -> SightLines:
-        found = self._geometries.get(grid)
-        if found is None:
+        geometry = self._geometries.get(grid)
+        if geometry is None:
             made = lines_of_sight(self.witness.sight, self.witness.box.low, blocks)
-            found = self._geometries[grid] = made
-        return found
+            geometry = self._geometries[grid] = made
+        return geometry
 
 
 def _eye(glimpse: Glimpse, owner: str) -> Gaze:

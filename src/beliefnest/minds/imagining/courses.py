@@ -352,10 +352,10 @@ class Course:
     def _take_item(self, walker: Walker, item: str) -> None:
         """Take an item out of the nearest container; dropped items stay where they are."""
         x, y, z = walker.cell
-        held = [place for place, items in self.world.containers.items() if items.get(item)]
+        holding = [place for place, items in self.world.containers.items() if items.get(item)]
         near = [
             (abs(place[0] - x) + abs(place[2] - z), abs(place[1] - y), place)
-            for place in walker.in_reach(held)
+            for place in walker.in_reach(holding)
         ]
         for _, _, place in sorted(near)[:1]:
             self.world.withdraw(walker.name, place, {item: 1})
@@ -372,11 +372,11 @@ class Course:
             if event.kind.traits.gains >= 0 or event.actor in self.plan.agents:
                 continue
             if (holder := agents.get(event.actor or "")) is not None:
-                held = dict(holder.inventory)
+                inventory = dict(holder.inventory)
                 for item, count in event.detail["items"].items():
-                    held[item] = max(count, held.get(item, 0))
-                if held != holder.inventory:
-                    agents[event.actor or ""] = replace(holder, inventory=held)
+                    inventory[item] = max(count, inventory.get(item, 0))
+                if inventory != holder.inventory:
+                    agents[event.actor or ""] = replace(holder, inventory=inventory)
         if agents != self.world.agents:
             self.world.set_state(replace(self.world.snapshot(), agents=agents))
 
@@ -423,21 +423,21 @@ class Course:
         """Change the world as it was changed by hand."""
         world = self.world
         box, blocks = world.box, world.terrain.draft()
-        held = {place: dict(items) for place, items in world.containers.items()}
+        contents = {place: dict(items) for place, items in world.containers.items()}
         for place, block in edit.blocks.items():
             state = max(AIR, plain_state(block))
             blocks[box.index(place)] = self._changed_blocks[box.index(place)] = state
             if Registry.load().is_container(Registry.load().name(state)):
-                held.setdefault(place, {})
+                contents.setdefault(place, {})
             else:
-                held.pop(place, None)
-        held |= {place: dict(items) for place, items in edit.containers.items()}
-        for place in held.keys() | world.containers.keys():
-            before, after = world.containers.get(place, {}), held.get(place, {})
+                contents.pop(place, None)
+        contents |= {place: dict(items) for place, items in edit.containers.items()}
+        for place in contents.keys() | world.containers.keys():
+            before, after = world.containers.get(place, {}), contents.get(place, {})
             for item in before.keys() | after.keys():
                 self._note_moved(place, item, after.get(item, 0) - before.get(item, 0))
         self.touched = self.touched | edit.containers.keys()
-        world.set_state(replace(world.snapshot(), blocks=blocks.terrain(), containers=held))
+        world.set_state(replace(world.snapshot(), blocks=blocks.terrain(), containers=contents))
         self.entries.append(edit)
         self._note_changes()
 
@@ -474,12 +474,12 @@ class Course:
         world, frame = self.world, self._latest
         deeds: tuple[DeedKey, ...] = ()
         if frame is not None and frame.events:
-            found = [
+            observed = [
                 deed_of(event.kind, event.actor, event.detail)
                 for event in frame.events
                 if event.kind in AT_CONTAINERS and event.actor in self.plan.agents
             ]
-            deeds = tuple(sorted(found))
+            deeds = tuple(sorted(observed))
         is_new = frame is None or not frame.is_empty
         containers = dict(world.containers)
         return Glimpse(world.now, world.terrain, world.agents, containers, deeds, is_new)

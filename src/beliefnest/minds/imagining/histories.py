@@ -98,9 +98,9 @@ class History(Barred):
             PathError: There is no such agent.
         """
         imagined, course = self._imagined, self._course
-        known = imagined._recording.agents
-        if agent not in known:
-            raise PathError(f"no agent {agent!r}; there are {', '.join(known)}")
+        agents = imagined._recording.agents
+        if agent not in agents:
+            raise PathError(f"no agent {agent!r}; there are {', '.join(agents)}")
         first = imagined._starts.of(course.drawn).agents.get(agent)
         placed: dict[int, Point | None] = {}
         if first is not None:
@@ -109,13 +109,13 @@ class History(Barred):
             if isinstance(entry, Frame) and agent in entry.agents:
                 state = entry.agents[agent]
                 placed[entry.tick] = None if state is None else state.position
-        found: dict[int, Point] = {}
+        feet_by_tick: dict[int, Point] = {}
         feet = None
         for tick in range(imagined.since, course.tick + 1):
             feet = placed.get(tick, feet)
             if feet is not None:
-                found[tick] = feet
-        return found
+                feet_by_tick[tick] = feet
+        return feet_by_tick
 
     def __getitem__(self, path: str) -> Any:
         """Return a simulator at the end of the history; `/` is the history's world."""
@@ -232,11 +232,11 @@ class Imagined(Barred):
         """
         wanted = goal_conditions(self._recording, condition)
         with self._recording.turn:
-            held: dict[Course, bool] = {}
+            holds: dict[Course, bool] = {}
             for particle in self._particles:
-                if particle.course not in held:
-                    held[particle.course] = self._holds(particle.course, wanted)
-        return math.fsum(each.weight for each in self._particles if held[each.course])
+                if particle.course not in holds:
+                    holds[particle.course] = self._holds(particle.course, wanted)
+        return math.fsum(each.weight for each in self._particles if holds[each.course])
 
     def by_candidate(self, agent: str) -> dict[str, float]:
         """Return the probability of each candidate of an agent.
@@ -259,10 +259,10 @@ class Imagined(Barred):
 
         Histories that were dropped count too.
         """
-        found: dict[str, dict[str, str]] = {}
+        faults: dict[str, dict[str, str]] = {}
         for (agent, name), fault in self._drawing.plan.failures.items():
-            found.setdefault(agent, {})[name] = str(fault)
-        return found
+            faults.setdefault(agent, {})[name] = str(fault)
+        return faults
 
     def frame(self) -> "pd.DataFrame":
         """Return the candidates of all histories.
@@ -328,13 +328,13 @@ class Imagined(Barred):
 
     def _recorded(self, course: Course) -> Recording:
         """Return timelines with the course on one of its own, beside those of the nest."""
-        found = self._read.get(course)
-        if found is None:
+        recording = self._read.get(course)
+        if recording is None:
             key = TimelineKey(self._path, f"history {len(self._read)}")
             self._append(self._side.journal, key, course)
-            found = self._read[course] = self._side.on(key)
-            found.sums = {self._path: self._sums(key, course)}
-        return found
+            recording = self._read[course] = self._side.on(key)
+            recording.sums = {self._path: self._sums(key, course)}
+        return recording
 
     def _sums(self, key: TimelineKey, course: Course) -> StateSums:
         """Return the sums of a course; courses with the same alternatives share their beginning."""

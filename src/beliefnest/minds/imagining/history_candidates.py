@@ -40,30 +40,29 @@ class Candidates:
     policies: "HistoryPolicies"
     is_alone: bool
 
-    def of(self, agent: str, name: str, given: object) -> Candidate:
+    def of(self, agent: str, name: str, one: object) -> Candidate:
         """Return a candidate of an agent.
 
         Raises:
             InputError: It is no program, model of that agent, or policy; or the model cannot
                 reach any of its goals.
         """
-        if isinstance(given, str):
-            return Candidate(name, program=given)
-        if isinstance(given, MindModel):
-            if given.agent != agent:
+        if isinstance(one, str):
+            return Candidate(name, program=one)
+        if isinstance(one, MindModel):
+            if one.agent != agent:
                 raise InputError(
-                    f"candidate {name!r} of {agent} is a model of {given.agent}; give one of "
-                    f"{agent}"
+                    f"candidate {name!r} of {agent} is a model of {one.agent}; give one of {agent}"
                 )
-            start = start_of_model(self.recording, self.path, given, self.base.tick, self.end.tick)
+            start = start_of_model(self.recording, self.path, one, self.base.tick, self.end.tick)
             feet = self.starts.snapshot.agents.get(agent)
             if feet is not None and self.is_alone:
                 start.check_goals(block_at(feet.position))
             return Candidate(name, strategy=_strategy(self.recording, start, self.starts, name))
-        if callable(given):
-            return Candidate(name, policy=self.policies.of(given, agent, name))
+        if callable(one):
+            return Candidate(name, policy=self.policies.of(one, agent, name))
         raise InputError(
-            f"candidate {name!r} of {agent} is {given!r}; give a program (text), a MindModel, or a "
+            f"candidate {name!r} of {agent} is {one!r}; give a program (text), a MindModel, or a "
             "policy (a function from the agent's simulator to a program)"
         )
 
@@ -81,9 +80,9 @@ def _strategy(
         transparent=context.options.containers == "transparent",
     )
     elements = start.model.alternatives[0].elements
-    for known in starts.doubts:
-        same = known.strategy.model
-        if elements & known.elements and (
+    for doubt in starts.doubts:
+        same = doubt.strategy.model
+        if elements & doubt.elements and (
             [repr(each) for each in same.alternatives]
             != [repr(each) for each in start.model.alternatives]
             or same.actual_weights != start.model.actual_weights
@@ -92,7 +91,7 @@ def _strategy(
                 f"candidate {name!r} of {start.model.agent} and one of {same.agent} doubt the same "
                 "elements in different ways; give both the same doubt and the same actual"
             )
-    if elements and not any(elements == known.elements for known in starts.doubts):
+    if elements and not any(elements == doubt.elements for doubt in starts.doubts):
         starts.doubts.append(Doubt(elements, strategy))
     return strategy
 
@@ -128,13 +127,13 @@ class HistoryPolicies:
 
     def _shown(self, course: Course, agent: str) -> Any:
         journal = self.side.journal
-        known = self._keys.get(course)
+        latest = self._keys.get(course)
         entries = self.starts.entries(course)
-        if known is None:
+        if latest is None:
             key = TimelineKey(self.path, f"drawing {len(self._keys)}")
             journal.create(key, self.starts.base, self.starts.base.tick)
-            known = (key, 0)
-        key, written = known
+            latest = (key, 0)
+        key, written = latest
         journal.append(key, entries[written:], course.tick)
         self._keys[course] = (key, len(entries))
         recording = self.side.on(key)

@@ -42,24 +42,24 @@ class HistoryStarts:
         if not (blocks or contents or agents):
             return snapshot
         grid = snapshot.blocks.draft()
-        held = {place: dict(items) for place, items in snapshot.containers.items()}
+        contents_now = {place: dict(items) for place, items in snapshot.containers.items()}
         for place, block in blocks.items():
             state = max(0, plain_state(block))
             grid[snapshot.box.index(place)] = state
             if holds_items(registry, state):
-                held.setdefault(place, {})
+                contents_now.setdefault(place, {})
             else:
-                held.pop(place, None)
+                contents_now.pop(place, None)
         chest = registry.state_id("chest")
         state_at = states_in(snapshot.box, grid.terrain(), registry.air)
-        for given, items in contents.items():
-            place = container_at(registry, state_at, given)
+        for named_place, items in contents.items():
+            place = container_at(registry, state_at, named_place)
             index = snapshot.box.index(place)
             if not holds_items(registry, grid[index]):
                 grid[index] = chest
-            held[place] = dict(items)
+            contents_now[place] = dict(items)
         states = {**snapshot.agents, **agents}
-        return replace(snapshot, blocks=grid.terrain(), containers=held, agents=states)
+        return replace(snapshot, blocks=grid.terrain(), containers=contents_now, agents=states)
 
     def entries(self, course: Course) -> list[Edit | Frame]:
         """Return what is recorded of a course."""
@@ -84,6 +84,6 @@ class HistoryStarts:
             blocks |= {place: registry.state_id(text) for place, text in chosen.blocks.items()}
             contents |= {place: dict(items) for place, items in chosen.containers.items()}
             for name, feet in chosen.agents.items():
-                known = self.snapshot.agents.get(name)
-                agents[name] = AgentState(feet) if known is None else replace(known, position=feet)
+                state = self.snapshot.agents.get(name)
+                agents[name] = AgentState(feet) if state is None else replace(state, position=feet)
         return blocks, contents, agents

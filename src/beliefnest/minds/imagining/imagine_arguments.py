@@ -84,28 +84,28 @@ class Checked:
         )
 
 
-def _tolerance(given: object) -> Tolerance:
-    parts = [whole(part) for part in given] if isinstance(given, Sequence) else []
+def _tolerance(tolerance: object) -> Tolerance:
+    parts = [whole(part) for part in tolerance] if isinstance(tolerance, Sequence) else []
     if len(parts) != 2 or any(part is None or part < 0 for part in parts):
         raise InputError(
-            f"tolerance is {given!r}; give (cells, ticks), whole numbers that are 0 or more"
+            f"tolerance is {tolerance!r}; give (cells, ticks), whole numbers that are 0 or more"
         )
     return Tolerance(int(parts[0] or 0), int(parts[1] or 0))
 
 
 def _weights(
-    actors: Mapping[str, Mapping[str, object]], given: Mapping[str, Mapping[str, float]]
+    actors: Mapping[str, Mapping[str, object]], weights: Mapping[str, Mapping[str, float]]
 ) -> Mapping[str, Sequence[float]]:
-    if not isinstance(given, Mapping):
-        raise InputError(f"weights are {given!r}; give weights by candidate, by agent")
-    for agent in given:
+    if not isinstance(weights, Mapping):
+        raise InputError(f"weights are {weights!r}; give weights by candidate, by agent")
+    for agent in weights:
         if agent not in actors:
             raise PathError(f"weights name {agent!r}, who has no candidates")
-    found: dict[str, Sequence[float]] = {}
+    lists: dict[str, Sequence[float]] = {}
     for agent, named in actors.items():
-        mine = given.get(agent)
+        mine = weights.get(agent)
         if mine is None:
-            found[agent] = [1 / len(named)] * len(named)
+            lists[agent] = [1 / len(named)] * len(named)
             continue
         if not isinstance(mine, Mapping):
             raise InputError(f"the weights of {agent} are {mine!r}; give them by candidate")
@@ -123,8 +123,8 @@ def _weights(
         total = math.fsum(listed)
         if abs(total - 1) > _SUM_SLACK:
             raise InputError(f"the weights of {agent} sum to {total:.6g}; let them sum to 1")
-        found[agent] = listed
-    return found
+        lists[agent] = listed
+    return lists
 
 
 def _is_weight(value: object) -> bool:
@@ -137,13 +137,13 @@ def _is_weight(value: object) -> bool:
 
 
 def goal_conditions(
-    recording: Recording, given: Mapping[str, Any] | Sequence[Mapping[str, Any]]
+    recording: Recording, entries: Mapping[str, Any] | Sequence[Mapping[str, Any]]
 ) -> list[GoalCondition]:
     """Parse one condition, or a list of conditions, written as in goals."""
-    listed = [given] if isinstance(given, Mapping) else given
-    is_list = isinstance(given, Sequence) and not isinstance(given, str)
-    if not listed or not (is_list or isinstance(given, Mapping)):
-        raise InputError(f"the condition is {given!r}; give a mapping, or a list of mappings")
+    listed = [entries] if isinstance(entries, Mapping) else entries
+    is_list = isinstance(entries, Sequence) and not isinstance(entries, str)
+    if not listed or not (is_list or isinstance(entries, Mapping)):
+        raise InputError(f"the condition is {entries!r}; give a mapping, or a list of mappings")
     scene = PlainScene(recording.agents, recording.box)
     return [
         condition
@@ -155,7 +155,7 @@ def goal_conditions(
 def _evidence(recording: Recording, evidence: Sequence[Mapping[str, Any]]) -> Evidence:
     if isinstance(evidence, Mapping) or not isinstance(evidence, Sequence) or not evidence:
         raise InputError(f"evidence is {evidence!r}; give a list of conditions, or None")
-    found = []
+    entries = []
     for each in evidence:
         if not isinstance(each, Mapping):
             raise InputError(f"evidence has {each!r}; give conditions as mappings")
@@ -163,5 +163,5 @@ def _evidence(recording: Recording, evidence: Sequence[Mapping[str, Any]]) -> Ev
         if not _is_weight(mistaken) or mistaken > 1:
             raise InputError(f"mistaken is {mistaken!r}; give a probability")
         plain = {key: value for key, value in each.items() if key != "mistaken"}
-        found.append((goal_conditions(recording, plain), float(mistaken)))
-    return found
+        entries.append((goal_conditions(recording, plain), float(mistaken)))
+    return entries

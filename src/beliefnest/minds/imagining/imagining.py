@@ -68,7 +68,7 @@ def imagine_in(
     policies = HistoryPolicies(side, starts, path, past)
     candidates = Candidates(recording, path, base, end, starts, policies, len(asked.actors) == 1)
     starts.candidates = {
-        agent: {name: candidates.of(agent, name, given) for name, given in named.items()}
+        agent: {name: candidates.of(agent, name, policy) for name, policy in named.items()}
         for agent, named in asked.actors.items()
     }
     if absent := [agent for agent in asked.actors if agent not in snapshot.agents]:
@@ -103,11 +103,11 @@ def _filled(
         return {}
     filled: dict[Position, Block] = {}
     x, y, z = recording.box.low
-    known = believed.draft()
+    draft = believed.draft()
     for _, blocks in percepts[1:]:
-        new = blocks.differing(known.terrain(), lambda held, before: (before < 0) & (held >= 0))
+        new = blocks.differing(draft.terrain(), lambda after, before: (before < 0) & (after >= 0))
         for i, j, k in new.tolist():
-            known[i, j, k] = filled[x + i, y + j, z + k] = blocks[i, j, k]
+            draft[i, j, k] = filled[x + i, y + j, z + k] = blocks[i, j, k]
     return filled
 
 
@@ -158,7 +158,7 @@ def _drawn(starts: HistoryStarts, checked: Checked, seed: int) -> list[Drawn]:
         numbers = spread(checked.weights[agent], checked.n, chance)
         chance.shuffle(numbers)
         chosen[agent] = [listed[number] for number in numbers]
-    found = []
+    drawn_starts = []
     for number in range(checked.n):
         chance = Random(f"{seed} {number} hypotheses")
         drawn = tuple(doubt.strategy.draw_actual(chance) for doubt in starts.doubts)
@@ -171,8 +171,8 @@ def _drawn(starts: HistoryStarts, checked: Checked, seed: int) -> list[Drawn]:
             for agent, each in candidates.items()
             if each.strategy is not None
         }
-        found.append(Drawn(drawn, candidates, draws))
-    return found
+        drawn_starts.append(Drawn(drawn, candidates, draws))
+    return drawn_starts
 
 
 def _warn(imagined: Imagined) -> None:

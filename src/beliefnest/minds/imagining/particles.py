@@ -185,9 +185,9 @@ class HistoryDraws:
     def _lost(self, misfits: Mapping[Course, str | None], tick: int) -> Lost:
         """Return the most frequent reason; a contradiction in a history goes before percepts."""
         last = [each.course for each in self.particles]
-        found = [course.contradiction for course in last if course.contradiction is not None]
-        if found:
-            return Lost(tick, Counter(found).most_common(1)[0][0])
+        faults = [course.contradiction for course in last if course.contradiction is not None]
+        if faults:
+            return Lost(tick, Counter(faults).most_common(1)[0][0])
         why = Counter(misfits[course] for course in last).most_common(1)[0][0]
         many = "the last history" if len(last) == 1 else f"the last {len(last)} histories"
         return Lost(tick, f"{why} in {many} differ from what was perceived")
@@ -230,14 +230,14 @@ def spread(weights: Sequence[float], count: int, chance: Random) -> list[int]:
     """
     total = math.fsum(weights)
     start, number, reached = chance.random(), 0, weights[0] / total
-    found = []
+    numbers = []
     for each in range(count):
         wanted = (each + start) / count
         while wanted > reached and number + 1 < len(weights):
             number += 1
             reached += weights[number] / total
-        found.append(number)
-    return found
+        numbers.append(number)
+    return numbers
 
 
 def _effective(particles: Sequence[Particle]) -> float:

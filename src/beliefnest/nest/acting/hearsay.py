@@ -69,8 +69,8 @@ class Hearsay:
         claims = tuple(self._reader.read(key.path, tick, text, speaker, nameable))
         if not claims:
             return event
-        found = with_claims(event.detail, claims, nameable.box, nameable.agents)
-        return replace(event, detail={**found, "claims_from": self._reader.name})
+        detail = with_claims(event.detail, claims, nameable.box, nameable.agents)
+        return replace(event, detail={**detail, "claims_from": self._reader.name})
 
 
 def has_unread(frame: Frame) -> bool:
@@ -82,12 +82,12 @@ def recalled(frame: Frame, recorded: Frame | None) -> Frame:
     """Return a frame of a replay with the claims that were once read out of its utterances."""
     if recorded is None or not has_unread(frame):
         return frame
-    known = [event for event in recorded.events if "claims_from" in event.detail]
+    read = [event for event in recorded.events if "claims_from" in event.detail]
     events = []
     for event in frame.events:
-        same = next((k for k in known if _is_unread(event) and _bare(k) == _bare(event)), None)
+        same = next((k for k in read if _is_unread(event) and _bare(k) == _bare(event)), None)
         if same is not None:
-            known.remove(same)
+            read.remove(same)
         events.append(event if same is None else same)
     return replace(frame, events=tuple(events))
 
@@ -135,15 +135,15 @@ def _labels(recording: Recording, path: BeliefPath, believed: TimelineState) -> 
 
 def _items(recording: Recording, path: BeliefPath, believed: TimelineState) -> set[str]:
     """Return the items that an agent believes in, at first or now, has seen moved or heard of."""
-    found: set[str] = set()
+    names: set[str] = set()
     for state in (recording.state(path, recording.info(path).start), believed):
         for content in state.containers.values():
-            found.update(content.items)
+            names.update(content.items)
         for agent in state.agents.values():
-            found.update(agent.inventory, (agent.equipment or {}).values())
-        found.update(item.name for item in state.items.values())
+            names.update(agent.inventory, (agent.equipment or {}).values())
+        names.update(item.name for item in state.items.values())
     for event in believed.perceived:
-        found.update(event.detail.get("items", ()))
+        names.update(event.detail.get("items", ()))
         claims = claims_from_plain(event.detail.get("claims", ()))
-        found.update(claim.item for claim in claims if claim.item is not None)
-    return found
+        names.update(claim.item for claim in claims if claim.item is not None)
+    return names

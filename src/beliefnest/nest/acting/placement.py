@@ -184,8 +184,8 @@ def _can_be(space: BodySpace, agent: AgentState) -> bool:
     place = agent.position
     if not space.is_free(place):
         return False
-    held = space.has_floor(place) or space.unknown_floor(place) is not None
-    return held or not agent.on_ground
+    is_supported = space.has_floor(place) or space.unknown_floor(place) is not None
+    return is_supported or not agent.on_ground
 
 
 def _is_taken(place: Point, taken: Sequence[Point]) -> bool:
@@ -200,7 +200,7 @@ def _nearest(space: BodySpace, place: Point, taken: Sequence[Point]) -> Point | 
         ground.feet(cell): cell for cell in _cells_near(block_at(place)) if ground.stands(cell)
     }
     goals = _ends(space, ground, place, cells)
-    found = [
+    candidates = [
         (not _leads(ground, cell, goals), not space.has_floor(to), math.dist(place, to), to)
         for to, cell in cells.items()
         if math.dist(place, to) <= FARTHEST
@@ -208,7 +208,7 @@ def _nearest(space: BodySpace, place: Point, taken: Sequence[Point]) -> Point | 
         and space.is_clear(to)
         and not _is_taken(to, taken)
     ]
-    return min(found)[-1] if found else None
+    return min(candidates)[-1] if candidates else None
 
 
 def _ends(

@@ -128,10 +128,10 @@ def replay(
         ]
         entries = list(journal.entries(info.key, 0, info.entries))
         calls = [_call(list(group)) for _, group in groupby(mine, key=lambda p: p.group)]
-        found = _run_again(
+        replayed = _run_again(
             world, _RecordedTimeline(journal, history, info), entries, calls, seed, rules
         )
-        yield ReplayedTimeline(info.key, len(mine), first_difference(entries, found))
+        yield ReplayedTimeline(info.key, len(mine), first_difference(entries, replayed))
 
 
 def _call(group: Sequence[ProgramRecord]) -> _RecordedCall:
@@ -164,26 +164,26 @@ def _run_again(
     info = recorded.info
     # No body makes the frame that moves agents at a fork: take it from the record.
     moved = placing_frame(recorded.journal, info)
-    found: list[Entry] = [] if moved is None else [moved]
+    again: list[Entry] = [] if moved is None else [moved]
 
     once = {entry.tick: entry for entry in entries if isinstance(entry, Frame)}
 
     def take(frame: Frame) -> None:
         if not frame.is_empty:
             # Claims that a model read out of utterances are taken from the record.
-            found.append(recalled(frame, once.get(frame.tick)))
+            again.append(recalled(frame, once.get(frame.tick)))
 
     name = path_text(info.key.path)
-    begins = recorded.after(len(found), info.start, world)
+    begins = recorded.after(len(again), info.start, world)
     body = world.open_body(name, f"{seed} {name}", begins, take)
     try:
-        given = [
+        past = [
             (number, entry)
             for number, entry in enumerate(entries)
             if isinstance(entry, Edit)
             or not (world.has_physics or any(call.made(entry) for call in calls))
         ]
-        acts: list[tuple[int, int, Entry | _RecordedCall]] = [(e.tick, n, e) for n, e in given]
+        acts: list[tuple[int, int, Entry | _RecordedCall]] = [(e.tick, n, e) for n, e in past]
         acts += [(call.tick, call.entries, call) for call in calls]
         for tick, number, act in sorted(acts, key=lambda each: each[:2]):
             recorded.wait_until(body, tick)
@@ -193,8 +193,8 @@ def _run_again(
                 continue
             if isinstance(act, Frame) or act.path == info.key.path:
                 body.set_state(recorded.after(number + 1, act.tick, world))
-            found.append(act)
+            again.append(act)
         recorded.wait_until(body, info.head)
     finally:
         body.close()
-    return found
+    return again

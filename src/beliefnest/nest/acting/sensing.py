@@ -77,7 +77,7 @@ class Sensing:
                 context.registry,
                 context.box,
                 each.terrain,
-                {place: held.items for place, held in each.containers.items()},
+                {place: content.items for place, content in each.containers.items()},
             )
             for each in (acted_in, seen)
         )

@@ -71,9 +71,9 @@ def start_of(
         return BodyStart(snapshot)
     _, base = fork
     believed = history.state(base.timeline, path, base.entries, base.tick)
-    before, known = _filled(believed, history)
-    begun = _begun(before, known, believed, history).snapshot.agents
-    space = BodySpace(history.context.registry, snapshot.box, known)
+    before, known_blocks = _filled(believed, history)
+    begun = _begun(before, known_blocks, believed, history).snapshot.agents
+    space = BodySpace(history.context.registry, snapshot.box, known_blocks)
     return BodyStart(_floored(snapshot, blocks, unknown_floors(space, begun), history))
 
 
@@ -83,8 +83,8 @@ def _filled(reading: NodeView, history: StateHistory) -> tuple[Snapshot, Terrain
     if not reading.path:
         return snapshot, blocks
     registry = history.context.registry
-    known = with_chests(registry, snapshot.box, blocks, snapshot.containers)
-    return embodiable(registry, snapshot, known), known
+    with_all_chests = with_chests(registry, snapshot.box, blocks, snapshot.containers)
+    return embodiable(registry, snapshot, with_all_chests), with_all_chests
 
 
 def _begun(
@@ -106,10 +106,10 @@ def _begun(
 
 
 def _floored(
-    snapshot: Snapshot, known: Terrain, floors: Iterable[Position], history: StateHistory
+    snapshot: Snapshot, known_blocks: Terrain, floors: Iterable[Position], history: StateHistory
 ) -> Snapshot:
     cells = [snapshot.box.index(floor) for floor in floors]
-    cells = [cell for cell in cells if known[cell] < 0]
+    cells = [cell for cell in cells if known_blocks[cell] < 0]
     if not cells:
         return snapshot
     blocks = snapshot.blocks.draft()

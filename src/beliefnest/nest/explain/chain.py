@@ -51,10 +51,10 @@ def element_of(
     recording: Recording, container: Position | None, agent: str | None, block: Position | None
 ) -> Element:
     """Return the one element that is asked for; raises as `ShownSimulator.explain` does."""
-    given = [name for name in (container, agent, block) if name is not None]
-    if len(given) != 1:
+    named = [name for name in (container, agent, block) if name is not None]
+    if len(named) != 1:
         raise InputError(
-            f"explain() was given {len(given)} things; give exactly one of container=(x, y, z), "
+            f"explain() was given {len(named)} things; give exactly one of container=(x, y, z), "
             "agent='name' and block=(x, y, z)"
         )
     if agent is not None:
@@ -192,7 +192,7 @@ def _held_now(
 ) -> dict[BeliefPath, _HeldNow]:
     root, history = moment.timeline.path, recording.history
     cells = cells_of(element, recording.box)
-    held = {}
+    states = {}
     if cells:
         (forest,) = history.steps(moment.timeline, path, moment.entries, moment.entries, cells)
     else:
@@ -210,8 +210,8 @@ def _held_now(
         events = NodeView(forest, node).perceived
         if current and basis is not None:
             basis = replace(basis, observed_at=moment.tick)
-        held[node] = _HeldNow(value, block, basis, current, events)
-    return held
+        states[node] = _HeldNow(value, block, basis, current, events)
+    return states
 
 
 def _ground_of(
@@ -231,16 +231,16 @@ def _ground_of(
     return basis, cell in current
 
 
-def _fact(recording: Recording, moment: ForkPoint, held: _HeldNow, element: Element) -> BaseFact:
+def _fact(recording: Recording, moment: ForkPoint, belief: _HeldNow, element: Element) -> BaseFact:
     change = last_change(recording.history, recording.journal, moment, element)
     base = recording.journal.info(moment.timeline).base
     return BaseFact(
         path=moment.timeline.path,
         branch=moment.timeline.branch,
-        value=held.value,
-        block=held.block,
+        value=belief.value,
+        block=belief.block,
         since=None if change is None else change.tick,
-        acts=() if change is None else _acts(held.events, change.tick, element),
+        acts=() if change is None else _acts(belief.events, change.tick, element),
         edited=isinstance(change, Edit),
         forked_at=None if base is None else base.tick,
     )
@@ -378,13 +378,13 @@ def _acts(
 
 
 def _grounds(
-    recording: Recording, path: BeliefPath, held: Mapping[BeliefPath, _HeldNow], element: Element
+    recording: Recording, path: BeliefPath, beliefs: Mapping[BeliefPath, _HeldNow], element: Element
 ) -> ElementGrounds:
     """Return the grounds of a node at the beginning of everything: its prior beliefs."""
     seen = []
-    for node in (path[:depth] for depth in range(len(path), 0, -1) if path[:depth] in held):
+    for node in (path[:depth] for depth in range(len(path), 0, -1) if path[:depth] in beliefs):
         acts: dict[int, tuple[PerceivedEvent, ...]] = {}
-        for event in held[node].events:
+        for event in beliefs[node].events:
             if touches(element, event):
                 acts[event.tick] = (*acts.get(event.tick, ()), event)
         seen.append(acts)
@@ -395,8 +395,8 @@ def _grounds(
     for place, (items, complete) in priors.items() if element.kind == "container" else ():
         if place == element.where:
             grounds.content = Content(dict(items), complete, basis)
-            found = Contents(dict(items), complete)
-            grounds.chain.append(ValueGround(basis, basis.observed_at, None, found=found))
+            contents = Contents(dict(items), complete)
+            grounds.chain.append(ValueGround(basis, basis.observed_at, None, found=contents))
     return grounds
 
 
@@ -419,7 +419,7 @@ def _begin(recording: Recording, trace: _Finding) -> int:
 
 
 def _level(trace: _Finding, element: Element) -> Level:
-    held = trace.held
+    belief = trace.held
     at = trace.observed_at
     since = trace.since
     if since is not None and at is not None:
@@ -427,10 +427,10 @@ def _level(trace: _Finding, element: Element) -> Level:
     return Level(
         path=trace.path,
         holder=trace.path[-1],
-        value=held.value,
-        block=held.block,
-        basis=held.basis,
-        current=held.current,
+        value=belief.value,
+        block=belief.block,
+        basis=belief.basis,
+        current=belief.current,
         since=since,
         stood=trace.stood,
         missed=trace.missed,

@@ -79,8 +79,8 @@ class Differences(list[Difference]):
         b: Heading of the column of `b`.
     """
 
-    def __init__(self, found: Iterable[Difference], a: str, b: str) -> None:
-        super().__init__(found)
+    def __init__(self, differences: Iterable[Difference], a: str, b: str) -> None:
+        super().__init__(differences)
         self._headings = ("what", a, b)
 
     def __repr__(self) -> str:
@@ -135,9 +135,9 @@ def compare(
     known_blocks: Counts | None = None if unknown else lambda a, b: (a >= 0) & (b >= 0)
     blocks = _blocks_in(known_blocks, one, other, recording.context)
     things = _different_things(one, other)
-    known = (each for each in things if each.a is not None and each.b is not None)
-    found = itertools.chain(blocks, things if unknown else known)
-    return Differences(found, path_text(a), path_text(b))
+    both = (each for each in things if each.a is not None and each.b is not None)
+    differences = itertools.chain(blocks, things if unknown else both)
+    return Differences(differences, path_text(a), path_text(b))
 
 
 def false_beliefs(
@@ -160,28 +160,28 @@ def false_beliefs(
     """
     belief = recording.state(path, tick)
     real = recording.state(against, tick if against_tick is None else against_tick)
-    blocks = _blocks_in(lambda _, held: held >= 0, real, belief, recording.context)
-    found = itertools.chain(blocks, false_things(real, belief))
-    return Differences(found, path_text(against), path_text(path))
+    blocks = _blocks_in(lambda _, believed: believed >= 0, real, belief, recording.context)
+    differences = itertools.chain(blocks, false_things(real, belief))
+    return Differences(differences, path_text(against), path_text(path))
 
 
 def false_things(real: BelievedThings, belief: BelievedThings) -> Iterator[Difference]:
     """Yield the false beliefs about contents, positions and inventories; see `false_beliefs`."""
-    return (found for found in _different_things(real, belief) if _is_false(found))
+    return (difference for difference in _different_things(real, belief) if _is_false(difference))
 
 
 def _is_false(thing: Difference) -> bool:
     match thing.b:
-        case Contents() as held:
-            return are_false(thing.a if isinstance(thing.a, Contents) else None, held)
-        case Pose(position=held):
+        case Contents() as believed:
+            return are_false(thing.a if isinstance(thing.a, Contents) else None, believed)
+        case Pose(position=believed):
             true = thing.a.position if isinstance(thing.a, Pose) else None
-            return true is None or bool(are_elsewhere(np.array(true), np.array(held)))
+            return true is None or bool(are_elsewhere(np.array(true), np.array(believed)))
     return False
 
 
 def are_elsewhere(
-    real: npt.NDArray[np.float64], held: npt.NDArray[np.float64]
+    real: npt.NDArray[np.float64], believed: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.bool_]:
     """Return for each agent True if its believed position is at least half a block off.
 
@@ -190,12 +190,12 @@ def are_elsewhere(
 
     Args:
         real: Feet positions, shape (..., 3).
-        held: Believed feet positions, same shape.
+        believed: Believed feet positions, same shape.
 
     Returns:
         bool, shape (...).
     """
-    apart: npt.NDArray[np.bool_] = np.linalg.norm(real - held, axis=-1) >= _APART
+    apart: npt.NDArray[np.bool_] = np.linalg.norm(real - believed, axis=-1) >= _APART
     return apart
 
 
@@ -227,9 +227,9 @@ def _blocks_in(
 def _different_things(a: BelievedThings, b: BelievedThings) -> Iterator[Difference]:
     for place in sorted(a.containers.keys() | b.containers.keys()):
         contents = (reading.containers.get(place) for reading in (a, b))
-        held = [None if c is None else Contents(dict(c.items), c.complete) for c in contents]
-        if held[0] != held[1]:
-            yield Difference("container", place, held[0], held[1])
+        both = [None if c is None else Contents(dict(c.items), c.complete) for c in contents]
+        if both[0] != both[1]:
+            yield Difference("container", place, both[0], both[1])
     for name in a.agents:
         poses = _pose(a.agents[name]), _pose(b.agents[name])
         if _differ(*poses):

@@ -130,34 +130,34 @@ def last_change(
 ) -> Entry | None:
     """Return the last entry of a timeline that changed an element in its own world."""
     path = moment.timeline.path
-    held: object = _bare(value_in(history.shared(moment.timeline, path, 0), path, element))
+    value: object = _bare(value_in(history.shared(moment.timeline, path, 0), path, element))
     last = None
     entries = journal.entries(moment.timeline, 0, moment.entries)
     if element.kind != "agent":
-        found = journal.filtered(moment.timeline, 0, moment.entries, EntryFilter.CHANGES)
-        entries = (entry for _, entry in found)
+        changes = journal.filtered(moment.timeline, 0, moment.entries, EntryFilter.CHANGES)
+        entries = (entry for _, entry in changes)
     for entry in entries:
         if isinstance(entry, Edit) and entry.path != path:
             continue
-        after = _after(entry, element, history.context.registry, held)
-        if after != held:
-            held = after
+        after = _after(entry, element, history.context.registry, value)
+        if after != value:
+            value = after
             last = entry
     return last
 
 
-def _after(entry: Entry, element: Element, registry: Registry, held: object) -> object:
+def _after(entry: Entry, element: Element, registry: Registry, value: object) -> object:
     """Return the value of an element in its own world after an entry, in the form of `_bare`.
 
     Args:
         entry: The entry.
         element: The element.
         registry: Registry of blocks.
-        held: Value before the entry, in the same form.
+        value: Value before the entry, in the same form.
     """
     if isinstance(element.where, str):
         if isinstance(entry, Edit) or element.where not in entry.agents:
-            return held
+            return value
         agent = entry.agents[element.where]
         return None if agent is None else agent.position
     if element.kind == "container" and element.where in entry.containers:
@@ -165,12 +165,12 @@ def _after(entry: Entry, element: Element, registry: Registry, held: object) -> 
         return None if items is None else dict(items)
     block = entry.blocks.get(element.where)
     if block is None:
-        return held
+        return value
     if element.kind == "block":
         return block_words(registry, block)
     state = plain_state(block)
     holds = state >= 0 and holds_items(registry, state)
-    return (held or {}) if holds else None
+    return (value or {}) if holds else None
 
 
 def _bare(value: Value) -> object:

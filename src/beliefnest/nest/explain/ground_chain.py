@@ -61,8 +61,8 @@ class ElementGrounds:
             self.chain += self._told(step, {})
             return
         forest, old = step.forest, self.content
-        held = forest.holdings.of(forest.node(self.path))
-        new = held.containers.get(cell_of(forest.context.box, self.element.where))
+        holdings = forest.holdings.of(forest.node(self.path))
+        new = holdings.containers.get(cell_of(forest.context.box, self.element.where))
         self.content = None if new is None else new.at(forest.tick)
         had = {} if old is None else old.items
         left = {} if self.content is None else self.content.items
@@ -75,7 +75,7 @@ class ElementGrounds:
         # If a claim was repeated, keep only its last utterance.
         said = [_said(each) for each in moves]
         self.chain = [each for each in self.chain if _said(each) not in said] + moves
-        self._refute(forest, held)
+        self._refute(forest, holdings)
 
     def _perceive(
         self, step: LogStep, old: Content | None, new: Content, *, is_moved: bool
@@ -102,9 +102,9 @@ class ElementGrounds:
                 self.chain.append(replace(last, basis=basis, since=basis.observed_at))
                 return
         is_change = bool(acts) and all(act.actor != owner for act in acts) and not new.in_sight
-        found = None if is_change or is_moved else Contents(dict(new.items), new.complete)
+        contents = None if is_change or is_moved else Contents(dict(new.items), new.complete)
         ground = self.ground(basis, tick, step.forest.feet(self.path[:-1], owner))
-        ground = replace(ground, is_change=is_change, found=found)
+        ground = replace(ground, is_change=is_change, found=contents)
         self.chain = [*(self.chain if is_change else ()), ground]
 
     def ground(self, basis: Basis, since: int, stood: Point | None) -> ValueGround:
@@ -130,15 +130,15 @@ class ElementGrounds:
                 about = claim.of_whole(whole)
                 if verdicts and verdicts[node].believed and self._matters(about, had):
                     yield HeardClaim(forest.tick, event.actor, about)
-        for (cell, _), told in forest.holdings.of(node).told.items():
-            if told.tick != forest.tick or isinstance(step.entry, Edit):
+        for (cell, _), statement in forest.holdings.of(node).told.items():
+            if statement.tick != forest.tick or isinstance(step.entry, Edit):
                 continue
             claims = forest.context.claims_on(forest.block(self.path, cell))
-            for claim, verdict in zip(claims, told.verdicts, strict=False):
+            for claim, verdict in zip(claims, statement.verdicts, strict=False):
                 about = claim.of_whole(whole)
                 if self._matters(about, had) and Verdict(verdict).believed:
                     sign = place_of(forest.context.box, cell)
-                    yield HeardClaim(forest.tick, told.speaker, about, sign)
+                    yield HeardClaim(forest.tick, statement.speaker, about, sign)
 
     def _matters(self, claim: Claim, had: Items) -> bool:
         """Return True if a believed claim changes or confirms the value of the element."""
@@ -168,7 +168,7 @@ class ElementGrounds:
                 if where != self.element.where:
                     yield SeenElsewhere(tick, item, where)
 
-    def _refute(self, forest: Forest, held: Holdings) -> None:
+    def _refute(self, forest: Forest, holdings: Holdings) -> None:
         """Set `refuted` of claims if the owner now perceives that the item is not there."""
         for number, each in enumerate(self.chain):
             if (
@@ -180,13 +180,13 @@ class ElementGrounds:
             ):
                 continue
             cell, item = cell_of(forest.context.box, each.claim.cell), str(each.claim.item)
-            content = held.containers.get(cell)
+            content = holdings.containers.get(cell)
             if content is None or (
                 item not in content.items
                 and content.basis.source in (Source.SEEN, Source.WITNESSED)
             ):
                 self.chain[number] = replace(each, refuted=forest.tick)
-            elif item in held.counts.get(cell, {}):
+            elif item in holdings.counts.get(cell, {}):
                 self._confirmed.add(each)
 
 

@@ -127,8 +127,8 @@ class MadeClaim:
         if self.sign is None:
             return self.tick
         with self._recording.turn:
-            told = self._read(names).told.get(self._written)
-            return self.tick if told is None else told.tick
+            statement = self._read(names).told.get(self._written)
+            return self.tick if statement is None else statement.tick
 
     def _verdict(self, path: str) -> Verdict:
         return self._weighed(path)[0]
@@ -146,15 +146,15 @@ class MadeClaim:
             if self._recording.setting.perception.testimony == "none":
                 return Verdict.OFF, self.speaker
             if self.sign is not None:
-                told = self._read(names).told.get(self._written)
-                if told is None or self._index >= len(told.verdicts):
+                statement = self._read(names).told.get(self._written)
+                if statement is None or self._index >= len(statement.verdicts):
                     return Verdict.NOT_HEARD, None
-                return Verdict(told.verdicts[self._index]), told.speaker
+                return Verdict(statement.verdicts[self._index]), statement.speaker
             if names not in self._verdicts:
                 paths = self._recording.history.company(self._key, names, self._verdicts)
                 forest = self._recording.history.passed(self._key, paths, self._entry)
-                found = forest.verdicts[self._row, self._index]
-                self._verdicts.update((each, found[forest.node(each)]) for each in paths)
+                verdicts = forest.verdicts[self._row, self._index]
+                self._verdicts.update((each, verdicts[forest.node(each)]) for each in paths)
             return self._verdicts[names], self.speaker
 
     def _read(self, path: BeliefPath) -> Holdings:
@@ -183,8 +183,8 @@ class MadeClaim:
     def _is_contradicted(self, path: BeliefPath) -> bool:
         history = self._recording.history
         with self._recording.turn:
-            held = history.state(self._key, path, self._entry + 1)
-            return says_otherwise(held, history.context, self.claim)
+            view = history.state(self._key, path, self._entry + 1)
+            return says_otherwise(view, history.context, self.claim)
 
 
 def claims_made(recording: Recording, path: BeliefPath, tick: int | None) -> list[MadeClaim]:
@@ -221,24 +221,24 @@ def _told(
                     yield MadeClaim(recording, key, place_of, until, entry.tick, event, claim)
 
 
-def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
+def says_otherwise(view: NodeView, context: BeliefContext, claim: Claim) -> bool:
     """Return True if a state contradicts a claim. An unknown value contradicts nothing."""
     match claim.kind:
         case ClaimKind.POSITION:
-            believed = held.agents[str(claim.agent)].position
+            believed = view.agents[str(claim.agent)].position
             return believed is not None and _cell(believed) != claim.cell
         case ClaimKind.BLOCK:
-            there = _block(held, context, claim.cell)
+            there = _block(view, context, claim.cell)
             return there is not None and not agrees(there, str(claim.state))
         case ClaimKind.ABSENT:
-            content = held.containers.get(claim.cell)
+            content = view.containers.get(claim.cell)
             return content is not None and claim.item in content.items
         case ClaimKind.LOCATED:
-            return _is_elsewhere(held, context, claim)
+            return _is_elsewhere(view, context, claim)
 
 
-def _block(held: NodeView, context: BeliefContext, place: Position) -> str | None:
-    state = held.terrain[context.box.index(place)]
+def _block(view: NodeView, context: BeliefContext, place: Position) -> str | None:
+    state = view.terrain[context.box.index(place)]
     return None if state < 0 else context.registry.text(state)
 
 
@@ -246,21 +246,21 @@ def _cell(point: tuple[float, float, float]) -> tuple[int, ...]:
     return tuple(int(np.floor(value)) for value in point)
 
 
-def _is_elsewhere(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
+def _is_elsewhere(view: NodeView, context: BeliefContext, claim: Claim) -> bool:
     """Return True if an item is known not to be in the claimed container.
 
     Its content is complete and lacks the item, the block is known and is no container, or the item
     is believed to be somewhere else.
     """
-    content = held.containers.get(claim.cell)
+    content = view.containers.get(claim.cell)
     if content is not None and claim.item in content.items:
         return False
     if content is not None and content.complete:
         return True
-    if content is None and _block(held, context, claim.cell) is not None:
+    if content is None and _block(view, context, claim.cell) is not None:
         return True
-    others = any(claim.item in other.items for other in held.containers.values())
-    return others or any(claim.item in agent.inventory for agent in held.agents.values())
+    others = any(claim.item in other.items for other in view.containers.values())
+    return others or any(claim.item in agent.inventory for agent in view.agents.values())
 
 
 def _words(

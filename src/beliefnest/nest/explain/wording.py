@@ -63,15 +63,15 @@ def _belief_text(level: Level, element: Element) -> str:
     given_up = "" if level.since is None else _given_up(level, element)
     if level.value is None and element.kind != "container":
         return f"{outer}{holder} knows nothing of {name}.{given_up}"
-    known = f"{holder} believes that {_state_text(level.value, level.block, element)}"
+    sentence = f"{holder} believes that {_state_text(level.value, level.block, element)}"
     if isinstance(level.value, Contents) and not (level.value.items or level.value.complete):
-        known = f"{holder} does not know what {name} holds"
+        sentence = f"{holder} does not know what {name} holds"
     elif level.value is None and level.block is None:
-        known = f"{holder} knows nothing of a container at {_place(element)}"
+        sentence = f"{holder} knows nothing of a container at {_place(element)}"
     if not level.reasons:
-        return f"{outer}{known}.{given_up}"
+        return f"{outer}{sentence}.{given_up}"
     now = " That is current." if level.current else ""
-    return f"{outer}{known}: {_reasons_text(level, name)}.{now}"
+    return f"{outer}{sentence}: {_reasons_text(level, name)}.{now}"
 
 
 def _given_up(level: Level, element: Element) -> str:
@@ -131,15 +131,15 @@ def _ground_text(level: Level, ground: ValueGround, name: str) -> str:
     return text if last or ground.found is None else f"{text} (then {_contents(ground.found)})"
 
 
-def _told_text(level: Level, told: HeardClaim) -> str:
+def _told_text(level: Level, heard: HeardClaim) -> str:
     """Return a claim that the holder heard or read, in words."""
-    holder, speaker = level.holder, told.speaker
-    wrong = f", which {holder} perceived at tick {told.refuted} to be wrong"
-    what = f"at tick {told.tick} that {told.claim}{'' if told.refuted is None else wrong}"
-    if told.sign is None:
+    holder, speaker = level.holder, heard.speaker
+    wrong = f", which {holder} perceived at tick {heard.refuted} to be wrong"
+    what = f"at tick {heard.tick} that {heard.claim}{'' if heard.refuted is None else wrong}"
+    if heard.sign is None:
         said = f"{holder} said" if speaker == holder else f"{speaker} told {holder}"
         return f"{said} {what}"
-    sign = f"the sign at {_point(told.sign)}"
+    sign = f"the sign at {_point(heard.sign)}"
     if speaker == holder:
         return f"{holder} wrote on {sign} {what}"
     by = "" if speaker is None else f", which {speaker} wrote,"
@@ -256,10 +256,10 @@ def _how(acts: Iterable[PerceivedEvent], edited: bool) -> str:
 
 
 def _acts_text(acts: Iterable[PerceivedEvent]) -> str:
-    told = list(acts)
+    all_ = list(acts)
     # An act and the block update that it causes are both recorded: tell the act alone.
-    deeds = [act for act in told if act.actor is not None or act.kind is not EventKind.BLOCK_UPDATE]
-    words = (f"{act.actor or 'something'} {did(act)}" for act in deeds or told)
+    deeds = [act for act in all_ if act.actor is not None or act.kind is not EventKind.BLOCK_UPDATE]
+    words = (f"{act.actor or 'something'} {did(act)}" for act in deeds or all_)
     return ", then ".join(dict.fromkeys(words))
 
 

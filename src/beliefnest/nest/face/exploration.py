@@ -48,8 +48,8 @@ class Attempt:
 
     def __repr__(self) -> str:
         scores = {"score": self.score} if isinstance(self.score, float) else self.score
-        told = ", ".join(f"{name} {value:g}" for name, value in scores.items())
-        return f"<attempt on branch {self.branch!r}, {told}: {self.result!r}>"
+        score_words = ", ".join(f"{name} {value:g}" for name, value in scores.items())
+        return f"<attempt on branch {self.branch!r}, {score_words}: {self.result!r}>"
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,12 +36,12 @@ def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | No
     """
     if hook is None:
         return None
-    given: object = hook
-    if isinstance(given, AsksModel):
-        return _ModelReader(given, recording)
-    if not _takes_three(given):
+    own: object = hook
+    if isinstance(own, AsksModel):
+        return _ModelReader(own, recording)
+    if not _takes_three(own):
         raise InputError(
-            f"claims_from is {given!r}; give a function of three arguments: text, speaker, nameable"
+            f"claims_from is {own!r}; give a function of three arguments: text, speaker, nameable"
         )
     return _FunctionReader(hook)
 
@@ -70,13 +70,13 @@ class _FunctionReader:
     def read(
         self, path: BeliefPath, tick: int, text: str, speaker: str, nameable: Nameable
     ) -> Iterable[Claim]:
-        found: object = self._hook(text, speaker, nameable)
-        if isinstance(found, str) or not isinstance(found, Iterable):
+        items: object = self._hook(text, speaker, nameable)
+        if isinstance(items, str) or not isinstance(items, Iterable):
             raise InputError(
-                f"claims_from ({self.name}) returned {found!r} for {text!r}; it must return a list "
+                f"claims_from ({self.name}) returned {items!r} for {text!r}; it must return a list "
                 "of claims, [] for none"
             )
-        return found
+        return items
 
 
 class _ModelReader:

@@ -493,8 +493,8 @@ class Nest(NestBase):
     def _host_of_person(self, name: str) -> RealtimePlay:
         people = self._recording.setting.people
         if name not in people:
-            known = ", ".join(sorted(people)) or "none"
-            raise UnknownNameError(f"this scenario has no person {name!r}; its people are {known}")
+            names = ", ".join(sorted(people)) or "none"
+            raise UnknownNameError(f"this scenario has no person {name!r}; its people are {names}")
         host = self._engine.world.realtime
         if host is None:
             raise InputError(

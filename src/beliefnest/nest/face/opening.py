@@ -52,19 +52,19 @@ class BareSetting:
     condition: int | None = None
 
 
-def as_scenario(given: HasSetting | Setting) -> HasSetting:
+def as_scenario(scenario: HasSetting | Setting) -> HasSetting:
     """Return a scenario or setting in the form that a nest can open.
 
     Raises:
         InputError: `given` is a name or something else.
     """
-    if isinstance(given, Setting):
-        return BareSetting(given)
-    if not hasattr(given, "setting"):
+    if isinstance(scenario, Setting):
+        return BareSetting(scenario)
+    if not hasattr(scenario, "setting"):
         raise InputError(
-            f"{given!r} is not a scenario; give a loaded one, bn.Scenario.load({given!r})"
+            f"{scenario!r} is not a scenario; give a loaded one, bn.Scenario.load({scenario!r})"
         )
-    return given
+    return scenario
 
 
 def begun(

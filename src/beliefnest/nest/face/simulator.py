@@ -260,8 +260,8 @@ class Simulator(ShownSimulator):
             for position, text in (blocks or {}).items()
         }
         for position, text in (signs or {}).items():
-            held = self._recording.state(self._path).terrain[box.index(position)]
-            state = plain_state(states.get(position, held))
+            present = self._recording.state(self._path).terrain[box.index(position)]
+            state = plain_state(states.get(position, present))
             states[position] = written(registry, state, text)
         for items in (containers or {}).values():
             for name, count in items.items():
@@ -272,10 +272,10 @@ class Simulator(ShownSimulator):
                     )
         view = self._recording.state(self._path)
         states = {**_parted(registry, view, states), **states}
-        known = states_in(box, view.terrain, UNKNOWN)
+        state_now = states_in(box, view.terrain, UNKNOWN)
 
         def state_at(at: Position) -> int:
-            return plain_state(states[at]) if at in states else known(at)
+            return plain_state(states[at]) if at in states else state_now(at)
 
         contents: dict[Position, dict[str, int]] = {}
         for position, items in (containers or {}).items():
@@ -387,16 +387,16 @@ def _parted(
     registry: Registry, view: NodeView, states: Mapping[Position, Block]
 ) -> dict[Position, Block]:
     """Return single chests for the halves of double chests whose other half is replaced."""
-    known = states_in(view.box, view.terrain, UNKNOWN)
+    state_at = states_in(view.box, view.terrain, UNKNOWN)
     single: dict[Position, Block] = {}
     for place, block in states.items():
-        other = other_half(registry, known(place), place)
+        other = other_half(registry, state_at(place), place)
         replaced = plain_state(block)
         if (
             other is not None
-            and is_double(registry, known, place)
+            and is_double(registry, state_at, place)
             and replaced >= 0
-            and registry.name(replaced) != registry.name(known(place))
+            and registry.name(replaced) != registry.name(state_at(place))
         ):
-            single[other[0]] = registry.changed(known(other[0]), type="single")
+            single[other[0]] = registry.changed(state_at(other[0]), type="single")
     return single

@@ -24,9 +24,9 @@ def note_internal_state(journal: Journal, moment: ForkPoint, state: bytes) -> No
 def internal_state_at(journal: Journal, moment: ForkPoint) -> bytes:
     """Return the internal state stored for a moment; empty bytes if there is none."""
     while True:
-        found = journal.body_state(moment.timeline, moment.entries, moment.tick)
-        if found is not None:
-            return found
+        recorded = journal.body_state(moment.timeline, moment.entries, moment.tick)
+        if recorded is not None:
+            return recorded
         base = journal.info(moment.timeline).base
         begins = base is not None and moment.entries == 0 and moment.tick == base.tick
         if base is None or not begins or base.timeline.path != moment.timeline.path:

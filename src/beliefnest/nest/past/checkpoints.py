@@ -96,16 +96,16 @@ class Checkpoints:
         """
         if position - after <= self._pace.lag:
             return None
-        found = self._journal.nearest_checkpoint(key, self._name(beliefs=True), position)
-        if found is None if paths is None else paths[0] == key.path:
+        checkpoint = self._journal.nearest_checkpoint(key, self._name(beliefs=True), position)
+        if checkpoint is None if paths is None else paths[0] == key.path:
             world = self._journal.nearest_checkpoint(key, self._name(beliefs=False), position)
-            if found is None or (world is not None and world[0] > found[0]):
-                found = world
-        if found is None or found[0] <= after:
+            if checkpoint is None or (world is not None and world[0] > checkpoint[0]):
+                checkpoint = world
+        if checkpoint is None or checkpoint[0] <= after:
             return None
-        forest = restored(self._context, events, found[1], paths)
+        forest = restored(self._context, events, checkpoint[1], paths)
         if forest is not None and paths is None:
-            self._note(key, forest, found[1])
+            self._note(key, forest, checkpoint[1])
         return forest
 
     def keep(self, key: TimelineKey, forest: Forest) -> None:

@@ -28,8 +28,8 @@ class ClaimedBlocks:
         self._context = context
         self._weighs = context.options.testimony == "informed"
         self._read: dict[TimelineKey, int] = {}
-        found = [*_switches(context, snapshot), *_claimed_at_first(context, snapshot)]
-        self.cells = frozenset(found if self._weighs else ())
+        cells = [*_switches(context, snapshot), *_claimed_at_first(context, snapshot)]
+        self.cells = frozenset(cells if self._weighs else ())
         context.track(sorted(self.cells))
 
     def read(self, key: TimelineKey) -> bool:
@@ -40,7 +40,7 @@ class ClaimedBlocks:
         if count == first:
             return False
         self._read[key] = count
-        found = {
+        cells = {
             cell_of(self._context.box, claim.cell)
             for _, entry in self._journal.filtered(key, first, count, EntryFilter.EVENTS)
             if isinstance(entry, Frame)
@@ -48,7 +48,7 @@ class ClaimedBlocks:
             for claim in claims_of(event)
             if claim.kind is ClaimKind.BLOCK
         }
-        new = found - self.cells
+        new = cells - self.cells
         self.cells |= new
         self._context.track(sorted(new))
         return bool(new)

@@ -97,21 +97,21 @@ def embodiable(registry: Registry, snapshot: Snapshot, blocks: Terrain) -> Snaps
         blocks: Its blocks from `with_chests`, -1 unknown.
     """
     state_at = states_in(snapshot.box, blocks, registry.air)
-    held = {
+    contents = {
         place: _fitting(registry, items, slots_at(registry, state_at, place))
         for place, items in snapshot.containers.items()
     }
     for place, _ in halves_in(registry, snapshot.box, blocks):
-        held.setdefault(container_at(registry, state_at, place), {})
+        contents.setdefault(container_at(registry, state_at, place), {})
     return replace(
         snapshot,
         blocks=blocks.mapped(lambda part: np.maximum(part, 0)),
-        containers=held,
+        containers=contents,
         agents={
             name: _laden(registry, _inside(snapshot.box, agent))
             for name, agent in snapshot.agents.items()
         },
-        signs={p: text for p, text in snapshot.signs.items() if p not in held},
+        signs={p: text for p, text in snapshot.signs.items() if p not in contents},
     )
 
 
@@ -162,9 +162,9 @@ def _laden(registry: Registry, agent: AgentState) -> AgentState:
     off_hand = int("off_hand" in agent.equipment)
     if items_fault(carried, registry, AGENT_SLOTS + off_hand, "") is None:
         return agent
-    held = [agent.equipment[slot] for slot in _HANDS if slot in agent.equipment]
-    rest = _fitting(registry, _without(carried, held), AGENT_SLOTS - len(held))
-    return replace(agent, inventory=dict(Counter(rest) + Counter(worn) + Counter(held)))
+    in_hands = [agent.equipment[slot] for slot in _HANDS if slot in agent.equipment]
+    rest = _fitting(registry, _without(carried, in_hands), AGENT_SLOTS - len(in_hands))
+    return replace(agent, inventory=dict(Counter(rest) + Counter(worn) + Counter(in_hands)))
 
 
 def _without(items: Items, others: Iterable[str]) -> dict[str, int]:

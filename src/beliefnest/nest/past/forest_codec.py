@@ -54,10 +54,10 @@ def restored(
     body = codec.decode(data, _Saved)
     nodes = body.nodes
     if paths is not None:
-        held = {path for path, _ in nodes}
-        if paths[0] not in held:
+        there = {path for path, _ in nodes}
+        if paths[0] not in there:
             return None
-        wanted = {path[:depth] for path in paths if path in held for depth in range(len(path) + 1)}
+        wanted = {path[:depth] for path in paths if path in there for depth in range(len(path) + 1)}
         nodes = [node for node in nodes if node[0] in wanted]
     states = (codec.decode(_unpacked(packed), NodeState) for _, packed in nodes)
     return Forest.restored(context, events, body.state, states)

@@ -94,8 +94,8 @@ class _Stretch:
             if edit.path not in forest:
                 forest.skip(edit.tick)
             else:
-                known = forest.context.number
-                blocks = {cell_of(box, at): known(block) for at, block in edit.blocks.items()}
+                number_of = forest.context.number
+                blocks = {cell_of(box, at): number_of(block) for at, block in edit.blocks.items()}
                 signs = (at for at, block in edit.blocks.items() if isinstance(block, Sign))
                 forest.context.note_signs(cell_of(box, at) for at in signs)
                 contents = {cell_of(box, place): items for place, items in edit.containers.items()}
@@ -197,7 +197,7 @@ class StateHistory:
         return len(list(islice(self._bases(self._journal.info(key).base), _CALLS))) == _CALLS
 
     def company(
-        self, key: TimelineKey, path: BeliefPath, held: Container[BeliefPath]
+        self, key: TimelineKey, path: BeliefPath, present: Container[BeliefPath]
     ) -> Sequence[BeliefPath]:
         """Return a node, and those next to it that a caller will probably ask for, too.
 
@@ -208,15 +208,15 @@ class StateHistory:
         Args:
             key: The timeline.
             path: The node.
-            held: Paths that were asked for at this moment of the timeline.
+            present: Paths that were asked for at this moment of the timeline.
         """
-        if path == key.path or path in held or self._is_far(key):
+        if path == key.path or path in present or self._is_far(key):
             return [path]
         agents = self.context.agents
         first = agents.index(path[-1])
         order = (*agents[first + 1 :], *agents[:first])
         others = [(*path[:-1], name) for name in order if path[-2:-1] != (name,)]
-        missing = [other for other in others if other not in held]
+        missing = [other for other in others if other not in present]
         most, count = most_nodes(self.context), len(others) - len(missing)
         if most is not None and 4 * (len(path) + count) > most:
             return [path]
@@ -417,19 +417,19 @@ class StateHistory:
 
     def _past(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest | None:
         """Return the cached forest with a node that is nearest before a position."""
-        found = None
+        nearest = None
         for other, forest in self._pasts:
             if other == key and path in forest and forest.position <= position:
                 # For the timeline's own simulator a forest without beliefs is better if it is far
                 # back: it can leap over the entries between (see `_leap`).
                 near = position - forest.position <= self._pace.lag
                 fits = near or path != key.path or not forest.has_beliefs
-                if fits and (found is None or forest.position > found.position):
-                    found = forest
-        return found
+                if fits and (nearest is None or forest.position > nearest.position):
+                    nearest = forest
+        return nearest
 
     def _head(self, key: TimelineKey, path: BeliefPath, count: int) -> Forest:
-        head = known = self._heads.get(key)
+        head = former = self._heads.get(key)
         if head is not None and head.position == count and path in head:
             return head
         if head is None:
@@ -438,7 +438,7 @@ class StateHistory:
             # Fold the new node as the head, which leaves checkpoints on the way. A node that is
             # added to a head later (below) is folded without any.
             head = self._begun(key, path)
-        if head is not known:
+        if head is not former:
             self._heads.put(key, head)
         while head.position < count:
             far = count if not head.has_beliefs else head.position + self._pace.every
@@ -493,8 +493,8 @@ class StateHistory:
         A checkpoint is of no use if a cell that claims are about was not tracked in it from the
         beginning.
         """
-        found = self._checkpoints.before(key, position, self._log(key), paths, after)
-        return found if found is None or self._claimed.cells <= found.since else None
+        saved = self._checkpoints.before(key, position, self._log(key), paths, after)
+        return saved if saved is None or self._claimed.cells <= saved.since else None
 
     def _begun_together(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
         """Return a forest of nodes and their ancestors, at a timeline's beginning."""
@@ -625,10 +625,10 @@ class StateHistory:
         while len(self._stretches) > _STRETCHES:
             del self._stretches[next(iter(self._stretches))]
         columns = stretch.columns
-        held = len(columns.held)
+        count_before = len(columns.held)
         for entry in self._journal.entries(key, columns.end, min(end, wanted)):
             stretch.add(entry)
-        self.context.track(columns.held[held:])
+        self.context.track(columns.held[count_before:])
         self._log(key).take(columns)
         return stretch
 

@@ -106,12 +106,12 @@ class _Turns:
         self._turned: dict[str, set[str | Position]] = {}
 
     def before(
-        self, told: _Looks, tick: int, looks: _Looks, feet: Mapping[str, Point | None]
+        self, already: _Looks, tick: int, looks: _Looks, feet: Mapping[str, Point | None]
     ) -> tuple[int, _Looks] | None:
         """Return the looks to tell before those of a tick, and take these over.
 
         Args:
-            told: Looks as they were told last.
+            already: Looks as they were told last.
             tick: The tick.
             looks: Looks at this tick.
             feet: Feet of all agents at this tick.
@@ -129,7 +129,7 @@ class _Turns:
         is_told = False
         for viewer, look in looks.items():
             past = previous.get(viewer, _NOTHING_SEEN).all
-            untold = past ^ told.get(viewer, _NOTHING_SEEN).all
+            untold = past ^ already.get(viewer, _NOTHING_SEEN).all
             turned = self._turned.get(viewer, set()) & untold
             if turned and _watchers(viewer, looks) != _watchers(viewer, previous):
                 is_told = True
@@ -208,11 +208,11 @@ class _Observer:
         perceived = {n: a for n, a in view.agents.items() if a.current and a.position is not None}
         feet = {name: agent.position for name, agent in perceived.items() if agent.position}
         has = {name: dict(agent.inventory) for name, agent in perceived.items() if agent.inventory}
-        known = {name: self._knowing(with_minds, name, items) for name, items in has.items()}
-        yield Outset(tick, self._owner, feet, has, known)
-        for at, held in view.containers.items():
-            if held.basis.source is Source.PRIOR and (held.items or held.complete):
-                yield Assumed(tick, at, dict(held.items))
+        minds = {name: self._knowing(with_minds, name, items) for name, items in has.items()}
+        yield Outset(tick, self._owner, feet, has, minds)
+        for at, content in view.containers.items():
+            if content.basis.source is Source.PRIOR and (content.items or content.complete):
+                yield Assumed(tick, at, dict(content.items))
         yield from self._changes(tick, scene)
 
     def _knowing(self, forest: Forest, holder: str, items: Items) -> tuple[str, ...]:
@@ -258,20 +258,20 @@ class _Observer:
         heard: Mapping[int, tuple[str, ...]],
     ) -> Iterator[Observation]:
         """Yield the events of one tick with the changes of sight before and after them."""
-        told = [event for event in events if not _is_noise(event, events)]
+        notable = [event for event in events if not _is_noise(event, events)]
         if self._owner is not None:
-            told = [event for event in told if not _is_upper_half(event, told)]
-        if not told:
+            notable = [event for event in notable if not _is_upper_half(event, notable)]
+        if not notable:
             return
-        if told[0].kind is not EventKind.MOVE_TO:
+        if notable[0].kind is not EventKind.MOVE_TO:
             yield from self._changes(tick - 1, before)
         after = self._scene(forest)
-        for number, event in enumerate(told):
+        for number, event in enumerate(notable):
             self._moved(event)
             yield Happened(tick, event, self._block_at(forest, event), heard.get(id(event)))
             if event.kind is EventKind.OPEN_CONTAINER and event.actor == self._owner:
-                yield from self._opened(tick, event, told[number + 1 :], after)
-        if told[-1].kind is EventKind.MOVE_TO:
+                yield from self._opened(tick, event, notable[number + 1 :], after)
+        if notable[-1].kind is EventKind.MOVE_TO:
             yield from self._changes(tick, after)
         else:
             yield from self._findings(tick, after)
@@ -283,15 +283,15 @@ class _Observer:
         place = opening.detail["position"]
         if place not in after.contents:
             return
-        held = dict(after.contents[place])
+        content = dict(after.contents[place])
         for event in later:
             if event.kind.traits.stores and event.detail.get("position") == place:
                 for name, count in event.detail.get("items", {}).items():
-                    held[name] = held.get(name, 0) - event.kind.traits.stores * count
-        held = {name: count for name, count in held.items() if count > 0}
-        if self._contents.get(place) != held:
-            self._contents[place] = held
-            yield Found(tick, place, dict(held))
+                    content[name] = content.get(name, 0) - event.kind.traits.stores * count
+        content = {name: count for name, count in content.items() if count > 0}
+        if self._contents.get(place) != content:
+            self._contents[place] = content
+            yield Found(tick, place, dict(content))
 
     def _block_at(self, forest: Forest, event: PerceivedEvent) -> str | None:
         """Return the name of the block at an event's position, as the owner believes."""
@@ -309,10 +309,10 @@ class _Observer:
         text = event.detail.get("text")
         if text is not None:
             self._texts[place] = text
-        known = self._contents.get(place)
-        if known is None or not stores:
+        content = self._contents.get(place)
+        if content is None or not stores:
             return
-        now = dict(known)
+        now = dict(content)
         for name, count in event.detail.get("items", {}).items():
             now[name] = now.get(name, 0) + stores * count
         self._contents[place] = {name: count for name, count in now.items() if count > 0}
@@ -321,9 +321,9 @@ class _Observer:
         """Yield the turns that must be told before what others see at this tick."""
         feet = {name: forest.feet(self._path, name) for name in forest.context.agents}
         looks = self._looks(forest, NodeView(forest, self._path))
-        told = self._turns.before(self._seen, forest.tick, looks, feet)
-        if told is not None:
-            yield from self._sights(*told)
+        turn = self._turns.before(self._seen, forest.tick, looks, feet)
+        if turn is not None:
+            yield from self._sights(*turn)
 
     def _changes(self, tick: int, scene: _Scene) -> Iterator[Observation]:
         yield from self._sights(tick, scene.looks)
@@ -366,13 +366,13 @@ class _Observer:
         looks = self._looks(forest, view)
         box = forest.context.box
         if self._owner is None:
-            contents = {at: held.items for at, held in view.containers.items()}
+            contents = {at: content.items for at, content in view.containers.items()}
             return _Scene(looks, contents, self._sign_texts(view, self._signs), view.items)
         present = forest.is_current(self._path, self._owner)
         contents = {
-            at: held.items
-            for at, held in view.containers.items()
-            if present and held.current and held.complete
+            at: content.items
+            for at, content in view.containers.items()
+            if present and content.current and content.complete
         }
         signs = looks[self._owner].places & view.signs.keys()
         cells = {

@@ -138,8 +138,8 @@ def _changed(
     before: Terrain, after: Terrain, box: Box, registry: Registry
 ) -> dict[Position, str | None]:
     x, y, z = box.low
-    found = ((index, after[index]) for index in map(tuple, after.differing(before).tolist()))
+    changes = ((index, after[index]) for index in map(tuple, after.differing(before).tolist()))
     return {
         (x + i, y + j, z + k): None if state < 0 else registry.text(state)
-        for (i, j, k), state in found
+        for (i, j, k), state in changes
     }

@@ -100,14 +100,14 @@ def percepts_of(
         start: The moment of the first percept.
         until: The moment of the last percept.
     """
-    found: list[tuple[Percept, Terrain]] = []
+    percepts: list[tuple[Percept, Terrain]] = []
     for percept, blocks in _read(recording, path, start, until):
-        if found and found[-1][0].tick == percept.tick:
+        if percepts and percepts[-1][0].tick == percept.tick:
             # A branch begins at this tick, and was edited there.
-            found[-1] = (percept.following(found[-1][0]), blocks)
-        elif not found or percept.is_new_after(found[-1][0]):
-            found.append((percept, blocks))
-    return found
+            percepts[-1] = (percept.following(percepts[-1][0]), blocks)
+        elif not percepts or percept.is_new_after(percepts[-1][0]):
+            percepts.append((percept, blocks))
+    return percepts
 
 
 def _read(
@@ -149,7 +149,7 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
     agents = view.agents
     present = owner is None or agents[owner].current
     # In reality every known block is current.
-    known = view.terrain if owner is None else None
+    terrain = view.terrain if owner is None else None
     seen: set[int] = set()
     if owner is not None and present:
         seen = forest.current_blocks(path, _in_reach(forest, path, owner))
@@ -158,14 +158,14 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
     def is_perceived(place: Position) -> bool:
         if place not in context.box:
             return False
-        if known is not None:
-            return known[context.box.index(place)] >= 0
+        if terrain is not None:
+            return terrain[context.box.index(place)] >= 0
         return cell_of(context.box, place) in seen
 
     contents = {
-        place: dict(held.items)
-        for place, held in view.containers.items()
-        if present and held.current and held.complete
+        place: dict(content.items)
+        for place, content in view.containers.items()
+        if present and content.current and content.complete
     }
     events = tuple(event for event in view.events_since(before) if event.tick == tick)
     deeds = [
@@ -181,7 +181,7 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
     percept = Percept(
         tick,
         present,
-        known,
+        terrain,
         cells,
         view.terrain.at(cells),
         contents,

@@ -71,7 +71,7 @@ def _moves(
 def _chests(recording: Recording, path: BeliefPath, tick: int | None) -> Placements:
     reading, box = recording.state(path, tick), recording.box
     registry = recording.context.registry
-    contents = {place: held.items for place, held in reading.containers.items()}
+    contents = {place: content.items for place, content in reading.containers.items()}
     chests: dict[str | Position, tuple[str | None, str]] = {}
     for place in chest_places(registry, box, reading.terrain, contents):
         state = reading.terrain[box.index(place)]

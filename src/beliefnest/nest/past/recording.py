@@ -140,10 +140,10 @@ class Recording(Barred):
 
         Each one is given up to the point where the next begins.
         """
-        found = [moment]
-        while (base := self.journal.info(found[-1].timeline).base) is not None:
-            found.append(base)
-        return found[::-1]
+        points = [moment]
+        while (base := self.journal.info(points[-1].timeline).base) is not None:
+            points.append(base)
+        return points[::-1]
 
     def moment(self, path: BeliefPath, tick: int | None = None) -> ForkPoint:
         """Return the point of a timeline from which a node's state comes, now or at a past tick.
@@ -163,8 +163,8 @@ class Recording(Barred):
 
     def state(self, path: BeliefPath, tick: int | None = None) -> TimelineState:
         """Return the state of a node now, or at a past tick; raises as `moment` does."""
-        if (sums := self.sums.get(path)) is not None and (found := sums.state(tick)) is not None:
-            return found
+        if (sums := self.sums.get(path)) is not None and (state := sums.state(tick)) is not None:
+            return state
         moment = self.moment(path, tick)
         return self.history.state(moment.timeline, path, moment.entries, moment.tick)
 

@@ -106,20 +106,20 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
 
 
 def _perception_to(options: Perception) -> dict[str, Any]:
-    default, given = asdict(Perception()), asdict(options)
+    default, values = asdict(Perception()), asdict(options)
     if isinstance(options.hearing, Radius):
-        given["hearing"] = options.hearing.blocks
+        values["hearing"] = options.hearing.blocks
     return {
         name: value
-        for name, value in given.items()
+        for name, value in values.items()
         if name in _ALWAYS_STORED or value != default[name]
     }
 
 
 def _perception_from(stored: dict[str, Any]) -> Perception:
     hearing = stored.get("hearing")
-    given = {**stored, "hearing": hearing if isinstance(hearing, str) else {"radius": hearing}}
+    values = {**stored, "hearing": hearing if isinstance(hearing, str) else {"radius": hearing}}
     try:
-        return msgspec.convert(given, Perception)
+        return msgspec.convert(values, Perception)
     except (msgspec.ValidationError, InputError) as error:
         raise StoreError(f"the run file stores invalid options of perception: {error}") from None

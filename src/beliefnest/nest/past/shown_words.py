@@ -45,8 +45,8 @@ def state_words(state: State) -> str:
             words += f", {told_text(basis.source, basis.speaker or 'a sign', age)}"
         people.append(words)
     stores = [
-        f"{point_words(place)} {contents_words(held.items, complete=held.complete)}"
-        for place, held in sorted(state.containers.items())[:_MOST]
+        f"{point_words(place)} {contents_words(content.items, complete=content.complete)}"
+        for place, content in sorted(state.containers.items())[:_MOST]
     ]
     more = len(state.containers) - len(stores)
     stores += [f"{more} more containers"] if more else []

@@ -123,20 +123,20 @@ class _SummedState(TimelineState):
     @Part
     def agents(self) -> Mapping[str, AgentBelief]:
         """The states of all agents, by name."""
-        return {name: self._moved(name, known) for name, known in self._base.agents.items()}
+        return {name: self._moved(name, belief) for name, belief in self._base.agents.items()}
 
     @Part
     def containers(self) -> Mapping[Position, ContainerBelief]:
         """The contents, in order of position; found at either half of a double chest."""
-        held = self._sums.after(self._count)[1].containers
-        found, ground = {}, self._ground
-        for cell in sorted(held):
-            content = held[cell]
+        contents = self._sums.after(self._count)[1].containers
+        beliefs, ground = {}, self._ground
+        for cell in sorted(contents):
+            content = contents[cell]
             if not self._count:
                 ground = replace(content.basis, observed_at=self.tick)
             place = place_of(self.box, cell)
-            found[place] = ContainerBelief(content.items, content.complete, ground, True)
-        return ByEitherHalf(found, self.container_at)
+            beliefs[place] = ContainerBelief(content.items, content.complete, ground, True)
+        return ByEitherHalf(beliefs, self.container_at)
 
     @Part
     def items(self) -> Mapping[int, DroppedItem]:
@@ -167,14 +167,14 @@ class _SummedState(TimelineState):
     def _ground(self) -> Basis:
         return Basis(self.tick, Source.SEEN)
 
-    def _moved(self, name: str, known: AgentBelief) -> AgentBelief:
+    def _moved(self, name: str, belief: AgentBelief) -> AgentBelief:
         """Return the state of an agent, from the known one and its last move."""
         numbers, states = self._sums.moves.get(name, _NO_MOVES)
         count = bisect_left(numbers, self._count)
-        ground, moved = known.basis, states[count - 1] if count else known
+        ground, moved = belief.basis, states[count - 1] if count else belief
         if count:
             ground = self._ground
-        elif ground is not None and known.current:
+        elif ground is not None and belief.current:
             ground = Basis(self.tick, ground.source, ground.event, ground.speaker)
         return AgentBelief(
             moved.position,
@@ -183,11 +183,11 @@ class _SummedState(TimelineState):
             moved.on_ground,
             moved.equipment,
             moved.inventory,
-            known.inventory_complete,
+            belief.inventory_complete,
             moved.health,
             moved.food,
             ground,
-            known.current or count > 0,
+            belief.current or count > 0,
         )
 
 
@@ -196,8 +196,8 @@ _NO_MOVES: tuple[list[int], list[AgentState]] = ([], [])
 
 def _holdings(state: TimelineState) -> Holdings:
     """Return the contents and dropped items of a state, by cell."""
-    held = {
+    containers = {
         cell_of(state.box, place): Content(each.items, each.complete, each.basis)
         for place, each in state.containers.items()
     }
-    return Holdings(held, items=dict(state.items))
+    return Holdings(containers, items=dict(state.items))

@@ -44,10 +44,10 @@ def _read(recording: Recording, path: BeliefPath, tick: int | None) -> ToldMind:
         return ToldMind(observations, names, labels, setting.places, setting.unique)
     state = recording.state(path, tick)
     labelled = Labelled(recording, recording.moment(path, tick))
-    known = labelled.known(state, observations, setting.labels)
+    known_names = labelled.known(state, observations, setting.labels)
     return ToldMind(
         observations,
-        believed_names(state, observations, known),
+        believed_names(state, observations, known_names),
         labelled.known(state, observations, setting.prompt_labels),
         known_places(state, setting.places),
         setting.unique,

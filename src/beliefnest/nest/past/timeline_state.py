@@ -63,8 +63,8 @@ class _Grounds:
         if cell not in self._currents:
             cells = self._asked_with(cell, self._currents)
             with self._source.turn:
-                found = self._source.current_blocks(*self._of, cells)
-            self._currents.update((each, each in found) for each in cells)
+                current = self._source.current_blocks(*self._of, cells)
+            self._currents.update((each, each in current) for each in cells)
         return self._currents[cell]
 
     def basis(self, cell: int) -> Basis | None:
@@ -75,14 +75,14 @@ class _Grounds:
                 self._bases.update(self._source.block_bases(*self._of, cells))
         return self._bases[cell]
 
-    def _asked_with(self, cell: int, known: Collection[int]) -> Sequence[int]:
+    def _asked_with(self, cell: int, cells_asked: Collection[int]) -> Sequence[int]:
         """Return the cells to compute together with one.
 
         A caller that asked for a few will probably ask for all, and in a small box all of them cost
         little more than one. In a box whose nodes hold chunks they are all around that cell.
         """
         context = self._context
-        if len(known) < _FEW and context.cells > _SMALL:
+        if len(cells_asked) < _FEW and context.cells > _SMALL:
             return [cell]
         if context.is_dense:
             return range(context.cells)

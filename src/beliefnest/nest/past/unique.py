@@ -19,12 +19,12 @@ def unique_items(names: Iterable[str]) -> frozenset[str]:
         InputError: `names` is not a list of names.
         UnknownNameError: Minecraft has no such item.
     """
-    given = None if isinstance(names, str) or not isinstance(names, Iterable) else tuple(names)
-    if given is None or not all(isinstance(name, str) for name in given):
+    listed = None if isinstance(names, str) or not isinstance(names, Iterable) else tuple(names)
+    if listed is None or not all(isinstance(name, str) for name in listed):
         raise InputError(f"unique is {quoted(names)}; give a list of items, such as ['diamond']")
-    for name in given:
+    for name in listed:
         Registry.load().item_stack(name)
-    return frozenset(name.removeprefix("minecraft:") for name in given)
+    return frozenset(name.removeprefix("minecraft:") for name in listed)
 
 
 def unique_fault(item: str, world: Snapshot, initial: Sequence[InitialBelief]) -> str | None:
@@ -65,7 +65,7 @@ def _spoken_of(initial: Iterable[InitialBelief]) -> Iterator[BeliefPath]:
 
 
 def _more_than_one(item: str, places: Iterable[tuple[str, Items]]) -> str | None:
-    found = [(place, items[item]) for place, items in places if items.get(item, 0) > 0]
-    if sum(count for _, count in found) < 2:
+    holders = [(place, items[item]) for place, items in places if items.get(item, 0) > 0]
+    if sum(count for _, count in holders) < 2:
         return None
-    return " and ".join(f"{count} {place}" for place, count in found)
+    return " and ".join(f"{count} {place}" for place, count in holders)

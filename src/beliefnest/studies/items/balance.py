@@ -72,26 +72,26 @@ def _largest(kinds: Sequence[_Excess], counts: Sequence[int]) -> Any:
         from scipy.optimize import Bounds, LinearConstraint, milp
     except ImportError:
         raise MissingExtraError("balanced items need scipy", "stats") from None
-    found = milp(
+    solution = milp(
         -np.ones(len(kinds)),
         integrality=np.ones(len(kinds)),
         bounds=Bounds(0, counts),
         constraints=LinearConstraint(np.array(kinds).T, -_EXACT, _EXACT),
     )
-    return np.rint(found.x).astype(int)
+    return np.rint(solution.x).astype(int)
 
 
 def _impossible(
     made: Mapping[str, Sequence[ItemRecord]], dimensions: Sequence[tuple[str, int]]
 ) -> str:
-    told = []
+    why = []
     for name, order in dimensions:
         every = [each for items in made.values() for each in items]
         answers = list(_answers(every, name, order))
         right = sum(answer == each.right for each, answer in answers)
         if abs(_excess(every, name, order)) > _EXACT:
-            told.append(f"{name} is right in {right} of {len(answers)} questions of order {order}")
+            why.append(f"{name} is right in {right} of {len(answers)} questions of order {order}")
     return (
         "no part of the variations has these shortcuts at chance: "
-        f"{'; '.join(told)}; vary what the answers depend on, or add conditions"
+        f"{'; '.join(why)}; vary what the answers depend on, or add conditions"
     )

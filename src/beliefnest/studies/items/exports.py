@@ -83,7 +83,7 @@ def card(described: Mapping[str, Any]) -> bytes:
     }
     changes = described["changes"]
     hidden = parts.get("held-out")
-    held = "" if hidden is None else f" {hidden} further items are held out."
+    held_out = "" if hidden is None else f" {hidden} further items are held out."
     # JSON is YAML.
     lines = [
         "---",
@@ -94,7 +94,7 @@ def card(described: Mapping[str, Any]) -> bytes:
         "",
         f"{parts['public']} questions about what agents believe, made by BeliefNest "
         f"{described['beliefnest']}. Right answers are",
-        f"computed from what the agents could perceive.{held} {described['dropped']} questions "
+        f"computed from what the agents could perceive.{held_out} {described['dropped']} questions "
         "were dropped, with the reasons",
         "in `dropped.jsonl`.",
         *(["", f"Changes in {described['version']}: {changes}"] if changes else []),
@@ -113,7 +113,7 @@ def croissant(described: Mapping[str, Any], items: bytes) -> bytes:
         described: Content of `set.json`.
         items: Content of `items.jsonl`.
     """
-    found = {
+    metadata = {
         "@context": _CONTEXT,
         "@type": "sc:Dataset",
         "conformsTo": _CROISSANT,
@@ -139,7 +139,7 @@ def croissant(described: Mapping[str, Any], items: bytes) -> bytes:
             }
         ],
     }
-    return f"{json.dumps(found, indent=2)}\n".encode()
+    return f"{json.dumps(metadata, indent=2)}\n".encode()
 
 
 def _field(name: str, kind: str) -> dict[str, Any]:

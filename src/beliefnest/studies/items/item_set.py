@@ -46,14 +46,14 @@ def read_description(folder: Path) -> SetDescription:
         InputError: The folder holds no set that this version can read.
     """
     try:
-        found = decode_json(read_regular(folder / _SET), SetDescription)
+        description = decode_json(read_regular(folder / _SET), SetDescription)
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(f"there is no set of items at {folder}; make one first") from None
     except (OSError, msgspec.DecodeError) as error:
         raise InputError(f"{folder / _SET} cannot be read: {error}; make the set anew") from None
-    if found.format != FORM:
+    if description.format != FORM:
         raise InputError(f"{folder} holds a set of another version; make it anew in a new folder")
-    return found
+    return description
 
 
 def check_folder(folder: Path, held_out: float) -> None:
@@ -178,10 +178,10 @@ class ItemSet:
             InputError: A file cannot be read.
         """
         place, files = Path(folder), self.files()
-        found = [line for name in files for line in _compared(place, name, files[name])]
+        differing = [line for name in files for line in _compared(place, name, files[name])]
         there = (each for each in sorted(place.rglob("*")) if each.is_file())
         names = (each.relative_to(place).as_posix() for each in there)
-        return [*found, *(f"{name}: is not of the set" for name in names if name not in files)]
+        return [*differing, *(f"{name}: is not of the set" for name in names if name not in files)]
 
 
 def _lines(records: Iterable[ItemRecord | DroppedQuestion]) -> bytes:

@@ -56,8 +56,8 @@ def with_balanced_items(
     """
     made: dict[str, list[ItemRecord]] = {}
     for item, nest, _ in played_items(items_of(plan.cells, documents), _say_nothing, "scripted"):
-        found = (_made(nest, item, each) for each in item.questions)
-        made[item.name] = [each for each in found if isinstance(each, ItemRecord)]
+        results = (_made(nest, item, each) for each in item.questions)
+        made[item.name] = [each for each in results if isinstance(each, ItemRecord)]
     try:
         names = balanced_names(made, shortcuts, seed)
     except InputError as error:
@@ -76,8 +76,8 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
     try:
         probe = resolved(nest, probe)
         (asked,) = (each for each in probe.questions if each.question == place)
-        verdict, told = check_prose(nest, probe, asked)
-        fault = told if verdict == "differs" else ""
+        verdict, reason = check_prose(nest, probe, asked)
+        fault = reason if verdict == "differs" else ""
         if asked.options and len(asked.right) > 1:
             fault = f"several options are right: {listed([repr(each) for each in asked.right])}"
     except ScenarioError as error:
@@ -144,5 +144,5 @@ def _items(nest: Nest) -> Iterable[str]:
     """Yield the names of all items, as stories write them."""
     state = nest["/"].state
     inside = [each.items for each in state.containers.values()]
-    held = (*inside, *(each.inventory for each in state.agents.values()))
-    yield from (name.replace("_", " ") for names in held for name in names)
+    inventories = (*inside, *(each.inventory for each in state.agents.values()))
+    yield from (name.replace("_", " ") for names in inventories for name in names)

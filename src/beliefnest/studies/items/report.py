@@ -21,8 +21,8 @@ _COUNTED = ("family", "scenario", "condition", "kind", "order", "checked")
 def _only(options: Sequence[str], key: Callable[[str], float]) -> str | None:
     """Return the option of which a key is greatest; None if several have it."""
     greatest = max(map(key, options))
-    found = [each for each in options if key(each) == greatest]
-    return found[0] if len(found) == 1 else None
+    greatest_options = [each for each in options if key(each) == greatest]
+    return greatest_options[0] if len(greatest_options) == 1 else None
 
 
 def _noted(name: str) -> Solver:
@@ -74,11 +74,11 @@ def _counts(items: Iterable[ItemRecord], name: str) -> list[tuple[Any, int]]:
 
 def _positions(items: Iterable[ItemRecord]) -> dict[int, list[int]]:
     """Return how often the right option stands at each place, by number of options."""
-    found: dict[int, list[int]] = {}
+    counts: dict[int, list[int]] = {}
     for each in items:
-        places = found.setdefault(len(each.options), [0] * len(each.options))
+        places = counts.setdefault(len(each.options), [0] * len(each.options))
         places[each.options.index(each.right)] += 1
-    return dict(sorted(found.items()))
+    return dict(sorted(counts.items()))
 
 
 def _options(items: Iterable[ItemRecord]) -> dict[str, dict[str, int]]:
@@ -166,8 +166,8 @@ def _majority(items: Sequence[ItemRecord]) -> Solver:
     counts = _options(items)
 
     def share(option: str) -> float:
-        known = counts.get(option)
-        return known["right"] / known["asked"] if known else 0.0
+        count = counts.get(option)
+        return count["right"] / count["asked"] if count else 0.0
 
     return lambda each: _only(each.options, share)
 
@@ -186,7 +186,7 @@ def _naive_bayes(items: Sequence[ItemRecord]) -> Solver:
     prior = Counter(each.right for each in items)
 
     def solve(item: ItemRecord) -> str | None:
-        known = [option for option in item.options if option in totals]
+        seen_options = [option for option in item.options if option in totals]
         used = _words(item)
 
         def score(option: str) -> float:
@@ -195,7 +195,7 @@ def _naive_bayes(items: Sequence[ItemRecord]) -> Solver:
                 n * math.log((counts[word] + 1) / total) for word, n in used.items()
             )
 
-        return _only(known, score) if known else None
+        return _only(seen_options, score) if seen_options else None
 
     return solve
 

@@ -35,14 +35,14 @@ def _lower_orders(nest: Nest, asked: Answers, naming: Naming) -> Iterator[tuple[
     for order in range(len(agents) + 1):
         path = path_text(agents[len(agents) - order :])
         try:
-            found = replace(believed, path=path).answers(
+            options = replace(believed, path=path).answers(
                 lambda each: nest[each].state, naming, asked.options
             )
         except ScenarioError:
             # The belief gives no option, or all.
-            found = ()
+            options = ()
         # Of the names of an answer in words, the first is the best.
-        answers.append(found[0] if len(found) == 1 or (found and not asked.options) else None)
+        answers.append(options[0] if len(options) == 1 or (options and not asked.options) else None)
     yield "reality", answers[0]
     for order, answer in enumerate(answers[:-1]):
         yield f"order_{order}", answer
@@ -55,8 +55,8 @@ def _mentions(options: Sequence[str], text: str) -> Iterator[tuple[str, str | No
     if not options:
         return
     places = mentions(options, text)
-    yield "first", _greatest(places, lambda found: -found[0])
-    yield "last", _greatest(places, lambda found: found[-1])
+    yield "first", _greatest(places, lambda starts: -starts[0])
+    yield "last", _greatest(places, lambda starts: starts[-1])
     yield "most", _greatest(places, len)
 
 
@@ -74,9 +74,9 @@ def mentions(options: Sequence[str], text: str) -> dict[str, list[int]]:
     """
     ordered = sorted(options, key=len, reverse=True)
     any_option = "|".join(re.escape(each).replace("_", "[ _]") for each in ordered)
-    found: dict[str, list[int]] = {}
+    starts: dict[str, list[int]] = {}
     for match in re.finditer(rf"(?<!\w)(?:{any_option})(?!\w)", text, re.IGNORECASE):
         name = match[0].replace(" ", "_").casefold()
         option = next(each for each in ordered if each.replace(" ", "_").casefold() == name)
-        found.setdefault(option, []).append(match.start())
-    return found
+        starts.setdefault(option, []).append(match.start())
+    return starts

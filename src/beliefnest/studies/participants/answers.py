@@ -69,16 +69,16 @@ def answer_files(paths: Iterable[Path]) -> list[Path]:
     Raises:
         InputError: A folder has no such file.
     """
-    found: list[Path] = []
+    files: list[Path] = []
     for path in paths:
         if not path.is_dir():
-            found.append(path)
+            files.append(path)
             continue
         inside = sorted(each for each in path.iterdir() if each.suffix in (".csv", ".json"))
         if not inside:
             raise InputError(f"{path} has no .csv or .json file with answers")
-        found += inside
-    return found
+        files += inside
+    return files
 
 
 def read_answers(file: Path) -> list[PersonAnswer]:
@@ -99,15 +99,15 @@ def read_answers(file: Path) -> list[PersonAnswer]:
     else:
         rows = _csv_rows(file, content)
         spoilt = spoilt_text
-    found = [
+    made = [
         _answer(where, row, spoilt)
         for where, row in rows
         if row.get("trial_type", _TRIAL) == _TRIAL
     ]
-    found += [_start(where, row, spoilt) for where, row in rows if row.get("trial_type") == _START]
-    if not found:
+    made += [_start(where, row, spoilt) for where, row in rows if row.get("trial_type") == _START]
+    if not made:
         raise InputError(f"{file} has no answers: no row has the trial_type {quoted(_TRIAL)}")
-    return found
+    return made
 
 
 def with_pseudonyms(answers: Sequence[PersonAnswer]) -> list[PersonAnswer]:
@@ -155,10 +155,10 @@ def _answer(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) ->
         if not texts[name]:
             raise InputError(f"{where}, column {name}: is empty; give the row as it was written")
     for name in _IDS:
-        told = spoilt(texts[name])
-        if told:
+        harm = spoilt(texts[name])
+        if harm:
             raise InputError(
-                f"{where}, column {name}: {quoted(texts[name])} is {told}, which a spreadsheet has "
+                f"{where}, column {name}: {quoted(texts[name])} is {harm}, which a spreadsheet has "
                 "made "
                 "of an id; give the file as it was written, without opening it in a spreadsheet"
             )

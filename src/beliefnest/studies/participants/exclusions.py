@@ -30,31 +30,31 @@ def read_exclusions(file: Path, answers: Sequence[PersonAnswer]) -> dict[str, st
         raise InputError(
             f"{file}:1 has no column {quoted(_IDS[0])}; give the ids of participants in it"
         )
-    known = {answer.participant for answer in answers}
-    found: dict[str, str] = {}
+    participants = {answer.participant for answer in answers}
+    exclusions: dict[str, str] = {}
     for line, row in sheet.rows:
         participant, reason = row[column].strip(), " ".join(row[_REASON].split())
         where = f"{file}:{line}, column"
-        if participant not in known:
+        if participant not in participants:
             spoilt = spoilt_text(participant)
-            told = f", which is {spoilt} that a spreadsheet made" if spoilt else ""
+            harm = f", which is {spoilt} that a spreadsheet made" if spoilt else ""
             raise InputError(
-                f"{where} {column}: nobody who answered is {quoted(participant)}{told}; correct "
+                f"{where} {column}: nobody who answered is {quoted(participant)}{harm}; correct "
                 "the id, and give the files of all participants, also of excluded ones"
             )
         if not reason:
             raise InputError(
                 f"{where} {_REASON}: is empty; say why {quoted(participant)} is excluded"
             )
-        if found.setdefault(participant, reason) != reason:
+        if exclusions.setdefault(participant, reason) != reason:
             raise InputError(
                 f"{where} {_REASON}: {quoted(participant)} is excluded for "
-                f"{quoted(found[participant])} as well; give one reason"
+                f"{quoted(exclusions[participant])} as well; give one reason"
             )
-    return found
+    return exclusions
 
 
 def excluded_words(reasons: Mapping[str, int]) -> str:
     """Return how many participants were excluded for which reasons, in words."""
-    told = [f"{count} for {quoted(reason)}" for reason, count in sorted(reasons.items())]
-    return f"{counted(sum(reasons.values()), 'participant')} by a list ({', '.join(told)})"
+    texts = [f"{count} for {quoted(reason)}" for reason, count in sorted(reasons.items())]
+    return f"{counted(sum(reasons.values()), 'participant')} by a list ({', '.join(texts)})"

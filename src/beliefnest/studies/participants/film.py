@@ -65,15 +65,15 @@ def read_film(nest: Nest, path: str, start: int) -> SceneFilm:
     changes = nest[path].changes(start)
     # A mind does not notice that time goes on after its last percept.
     end = nest.tick if view.owner is None else changes[-1]
-    told: dict[int, str] = {}
+    texts: dict[int, str] = {}
     for tick, sentence in captions(view):
         then = min(tick, end)
-        told[then] = f"{told[then]} {sentence}" if then in told else sentence
-    ticks = sorted({*_thinned(changes), *told, end})
+        texts[then] = f"{texts[then]} {sentence}" if then in texts else sentence
+    ticks = sorted({*_thinned(changes), *texts, end})
     pictures = _pictures(nest, path, ticks, view.names)
-    times = _durations(ticks, told)
+    times = _durations(ticks, texts)
     words: Iterator[str] = itertools.accumulate(
-        (told.get(tick, "") for tick in ticks), lambda before, now: now or before
+        (texts.get(tick, "") for tick in ticks), lambda before, now: now or before
     )
     distinct = list(dict.fromkeys(pictures))
     frames = [
@@ -87,11 +87,13 @@ def _thinned(ticks: Sequence[int]) -> Sequence[int]:
     return ticks[:: max(1, math.ceil(len(ticks) / _MOST))]
 
 
-def _durations(ticks: Sequence[int], told: Mapping[int, str]) -> list[int]:
+def _durations(ticks: Sequence[int], texts: Mapping[int, str]) -> list[int]:
     """Return the duration of each picture; one with a new caption can be read."""
     spans = [later - tick for tick, later in itertools.pairwise(ticks)]
     usual = [min(_LONGEST_MS, max(_SHORTEST_MS, span * _TICK_MS)) for span in spans]
-    reading = [_CAPTION_MS + _LETTER_MS * len(told[tick]) if tick in told else 0 for tick in ticks]
+    reading = [
+        _CAPTION_MS + _LETTER_MS * len(texts[tick]) if tick in texts else 0 for tick in ticks
+    ]
     return [max(pair) for pair in zip([*usual, _LONGEST_MS], reading, strict=True)]
 
 
@@ -113,10 +115,10 @@ def _pictures(
 
 def _joined(frames: Sequence[FilmFrame]) -> list[FilmFrame]:
     """Return frames without repetitions: equal neighbours become one."""
-    found: list[FilmFrame] = []
+    shown: list[FilmFrame] = []
     for frame in frames:
-        if found and (found[-1].picture, found[-1].caption) == (frame.picture, frame.caption):
-            found[-1] = replace(found[-1], ms=found[-1].ms + frame.ms)
+        if shown and (shown[-1].picture, shown[-1].caption) == (frame.picture, frame.caption):
+            shown[-1] = replace(shown[-1], ms=shown[-1].ms + frame.ms)
         else:
-            found.append(frame)
-    return found
+            shown.append(frame)
+    return shown

@@ -64,32 +64,32 @@ def items_of(cells: Iterable[Cell], documents: Mapping[str, Document]) -> list[I
     Raises:
         ScenarioError: No probe asks a question; the message names file, line and key.
     """
-    found: dict[str, Item] = {}
+    items_by_name: dict[str, Item] = {}
     for cell in cells:
         questions = tuple(_questions(cell.scenario.probes))
         if questions:
             item = Item(item_name(cell), cell, questions)
-            found.setdefault(item.name, item)
-    if not found:
+            items_by_name.setdefault(item.name, item)
+    if not items_by_name:
         document = next(iter(documents.values()))
         raise document.fault(
             ("probes",),
             "no probe asks a question that people can answer; give one "
             "`expect: {answers: {question: ..., right: ...}}`",
         )
-    return list(found.values())
+    return list(items_by_name.values())
 
 
 def left_out(cells: Iterable[Cell]) -> list[str]:
     """Return a line for each probe that people are not asked, with the reason."""
-    told = []
+    reasons = []
     for cell in cells:
         for number, probe in enumerate(cell.scenario.probes, 1):
             why = _why_left_out(probe)
             if why:
                 name = repr(probe.label) if probe.label else str(number)
-                told.append(f"{cell.key.scenario}: probe {name} is left out: {why}")
-    return list(dict.fromkeys(told))
+                reasons.append(f"{cell.key.scenario}: probe {name} is left out: {why}")
+    return list(dict.fromkeys(reasons))
 
 
 def _why_left_out(probe: Probe) -> str:

@@ -107,8 +107,8 @@ def counted_answers(
     for answer in own:
         if answer.started != firsts[answer.participant]:
             continue
-        given = sessions.setdefault(answer.participant, {}).setdefault(answer.cell, {})
-        before_it = given.setdefault(answer.question, answer)
+        sheet = sessions.setdefault(answer.participant, {}).setdefault(answer.cell, {})
+        before_it = sheet.setdefault(answer.question, answer)
         if before_it.response != answer.response:
             raise answer.fault(
                 "response",
@@ -166,35 +166,35 @@ def joined(
         notes: Notes of `counted_answers`.
         read: All answers and beginnings of sessions in the files.
     """
-    found = Joined(notes=list(notes))
-    known = {item.name: (item, by) for item, by in judged}
+    whole = Joined(notes=list(notes))
+    asked = {item.name: (item, by) for item, by in judged}
     for participant, cells in sessions.items():
-        for cell, given in cells.items():
-            item, by = known[cell]
-            outcomes = _outcomes(item, by, given)
-            found.answers += [
-                (given[question.id], _judged(_judge(by, question), given[question.id]).ok)
+        for cell, sheet in cells.items():
+            item, by = asked[cell]
+            outcomes = _outcomes(item, by, sheet)
+            whole.answers += [
+                (sheet[question.id], _judged(_judge(by, question), sheet[question.id]).ok)
                 for question in item.questions
-                if question.id in given
+                if question.id in sheet
             ]
             if outcomes:
-                found.cells.append(_cell(item, by, outcomes, name, participant, given))
-        found.notes += _missing(participant, cells, shown)
+                whole.cells.append(_cell(item, by, outcomes, name, participant, sheet))
+        whole.notes += _missing(participant, cells, shown)
     stopped = sum(bool(_missing(each, cells, shown)) for each, cells in sessions.items())
     started: dict[str, set[str]] = {}
     for each in read:
         started.setdefault(each.participant, set()).add(each.started)
     silent = len(started) - len(sessions)
     if silent:
-        found.notes.append(f"{counted(silent, 'participant')} began and gave no answer")
-    found.sessions = Sessions(
+        whole.notes.append(f"{counted(silent, 'participant')} began and gave no answer")
+    whole.sessions = Sessions(
         began=len(started),
         complete=len(sessions) - stopped,
         partial=stopped,
         unanswered=silent,
         repeated=sum(len(times) > 1 for times in started.values()),
     )
-    return found
+    return whole
 
 
 def _missing(
@@ -226,16 +226,16 @@ def _reply(asked: Answers, answer: PersonAnswer) -> Reply:
     return Reply(asked.question, answer.options, "", answer.response, said, answer.reason, outcome)
 
 
-def _outcomes(item: Item, by: Judged, given: Mapping[str, PersonAnswer]) -> list[ProbeOutcome]:
+def _outcomes(item: Item, by: Judged, sheet: Mapping[str, PersonAnswer]) -> list[ProbeOutcome]:
     """Return the outcomes of the probes all of whose questions are answered."""
     probes = dict.fromkeys(question.probe for question in item.questions)
-    found = []
+    made = []
     for number in probes:
         own = [question for question in item.questions if question.probe == number]
-        if all(question.id in given for question in own):
-            pairs = [(_judge(by, each), given[each.id]) for each in own]
-            found.append(_outcome(by.probes[number], pairs))
-    return found
+        if all(question.id in sheet for question in own):
+            pairs = [(_judge(by, each), sheet[each.id]) for each in own]
+            made.append(_outcome(by.probes[number], pairs))
+    return made
 
 
 def _outcome(probe: Probe, pairs: Sequence[tuple[Answers, PersonAnswer]]) -> ProbeOutcome:
@@ -250,7 +250,7 @@ def _cell(
     outcomes: Sequence[ProbeOutcome],
     name: str,
     participant: str,
-    given: Mapping[str, PersonAnswer],
+    sheet: Mapping[str, PersonAnswer],
 ) -> PersonCell:
     key = item.cell.key
     own = _PersonKey(
@@ -264,9 +264,9 @@ def _cell(
         setting=key.setting,
         participant=participant,
     )
-    first = next(iter(given.values()))
+    first = next(iter(sheet.values()))
     planned = replace(item.cell, key=own).plain()
-    found: dict[str, Any] = {
+    content: dict[str, Any] = {
         "error": None,
         "key": own.content_json(),
         "seed": own.seed,
@@ -277,7 +277,7 @@ def _cell(
         "page": {name: first.plain.get(name) for name in ("study", "shown", "list", "started")},
     }
     # A participant's answer is no copy of another one's.
-    return PersonCell({**planned, "alike": None}, found)
+    return PersonCell({**planned, "alike": None}, content)
 
 
 def check_name(name: str, models: Sequence[str]) -> None:

@@ -145,8 +145,8 @@ def join_answers(
     ]
     reasons = dict(Counter(excluded.values()))
     notes = [f"excluded: {excluded_words(reasons)}"] if reasons else []
-    given = [each for each in answers if not each.is_start]
-    sessions = counted_answers(given, {item.name: item for item in items}, notes)
+    real_answers = [each for each in answers if not each.is_start]
+    sessions = counted_answers(real_answers, {item.name: item for item in items}, notes)
     answered = {cell for own in sessions.values() for cell in own}
     wanted = [item for item in items if item.name in answered]
     pages = {each.study for each in answers if each.study}
@@ -155,9 +155,9 @@ def join_answers(
             f"the answers come from {len(pages)} different pages ({', '.join(sorted(pages))}), "
             "whose cells are all part of this study"
         )
-    found = joined(sessions, judged_items(wanted, on_item), name, items, notes, answers)
-    found.sessions = replace(found.sessions, excluded=reasons)
-    return found
+    result = joined(sessions, judged_items(wanted, on_item), name, items, notes, answers)
+    result.sessions = replace(result.sessions, excluded=reasons)
+    return result
 
 
 def write_answers(file: Path, answers: Sequence[tuple[PersonAnswer, bool]]) -> None:

@@ -118,7 +118,7 @@ def _pearson(sums: Floats) -> Floats:
     n, x, y, xx, yy, xy = np.moveaxis(sums, -1, 0)
     spread = (n * xx - x * x) * (n * yy - y * y)
     # A resample that contains only one film may have a spread that is only a rounding error.
-    told = np.where(spread > 1e-20, spread, np.nan)
+    variance = np.where(spread > 1e-20, spread, np.nan)
     with np.errstate(invalid="ignore"):
-        coefficients: Floats = (n * xy - x * y) / np.sqrt(told)
+        coefficients: Floats = (n * xy - x * y) / np.sqrt(variance)
     return coefficients

@@ -94,13 +94,13 @@ class Film:
 
         Each alternative is an event. If several places are in doubt, so is each `PLACE=GOAL`.
         """
-        found = {name: frozenset([name]) for name in self.alternatives}
+        names_of_event = {name: frozenset([name]) for name in self.alternatives}
         doubted = next(iter(self.alternatives.values()), {})
         for place in doubted if len(doubted) > 1 else ():
-            for name, held in self.alternatives.items():
-                event = event_name(place, held[place])
-                found[event] = found.get(event, frozenset()) | {name}
-        return found
+            for name, contents in self.alternatives.items():
+                event = event_name(place, contents[place])
+                names_of_event[event] = names_of_event.get(event, frozenset()) | {name}
+        return names_of_event
 
 
 def event_name(place: str, goal: str | None) -> str:

@@ -102,33 +102,33 @@ def parameters_from(content: Mapping[str, Any]) -> FilmParameters:
     Raises:
         InputError: One of them is not of the form.
     """
-    given = content.get("parameters", {})
-    if not isinstance(given, Mapping):
-        raise InputError(f"parameters are {quoted(given)}; give numbers by name")
+    numbers = content.get("parameters", {})
+    if not isinstance(numbers, Mapping):
+        raise InputError(f"parameters are {quoted(numbers)}; give numbers by name")
     usual = FilmParameters()
-    levels = given.get("reward_levels", list(usual.rewards))
+    levels = numbers.get("reward_levels", list(usual.rewards))
     by_goal = {}
     if isinstance(levels, Mapping):
         by_goal = {str(goal): _levels(values) for goal, values in levels.items()}
         levels = list(usual.rewards)
-    grid, smoothing = _grid(given.get("agent_prior_grid"), usual)
+    grid, smoothing = _grid(numbers.get("agent_prior_grid"), usual)
     return FilmParameters(
         rewards=_levels(levels),
         rewards_by_goal=by_goal,
-        discount=_number(given, "discount", usual.discount),
-        step_cost=_number(given, "move_or_eat_cost", usual.step_cost),
-        stay_cost=_number(given, "stay_cost", usual.stay_cost),
-        rationality=_number(given, "beta", usual.rationality),
+        discount=_number(numbers, "discount", usual.discount),
+        step_cost=_number(numbers, "move_or_eat_cost", usual.step_cost),
+        stay_cost=_number(numbers, "stay_cost", usual.stay_cost),
+        rationality=_number(numbers, "beta", usual.rationality),
         grid=grid,
         smoothing=smoothing,
     )
 
 
-def _levels(given: object) -> tuple[float, ...]:
-    values = [given] if _is_number(given) else given
+def _levels(levels: object) -> tuple[float, ...]:
+    values = [levels] if _is_number(levels) else levels
     if not isinstance(values, list) or not values or not all(map(_is_number, values)):
         raise InputError(
-            f"parameters: reward_levels are {quoted(given)}; give a list of numbers, or one for "
+            f"parameters: reward_levels are {quoted(levels)}; give a list of numbers, or one for "
             "each goal"
         )
     return tuple(map(float, values))
@@ -148,8 +148,8 @@ def _grid(text: object, usual: FilmParameters) -> tuple[int, float]:
     return int(steps[1]), float(shrunk[1]) if shrunk else 0.0
 
 
-def _number(given: Mapping[str, Any], name: str, usual: float) -> float:
-    value = given.get(name, usual)
+def _number(numbers: Mapping[str, Any], name: str, usual: float) -> float:
+    value = numbers.get(name, usual)
     if not _is_number(value):
         raise InputError(f"parameters: {name} is {quoted(value)}; give a number")
     return float(value)
@@ -194,12 +194,12 @@ class _Reader:
             raise self.fault("its world names no places; give spot1: [x, y] and so on")
         alternatives = self.alternatives(places)
         doubted = tuple(next(iter(alternatives.values())))
-        named = {goal for held in alternatives.values() for goal in held.values() if goal}
+        named = {goal for case in alternatives.values() for goal in case.values() if goal}
         goals = self.goals(named)
-        known = self.known([place for place in places if place not in doubted], goals, named)
-        present = (goal for goal in known.values() if goal)
+        stock = self.known([place for place in places if place not in doubted], goals, named)
+        present = (goal for goal in stock.values() if goal)
         goals = tuple(dict.fromkeys([*goals, *present])) if goals else ()
-        goals = goals or tuple(dict.fromkeys([*(g for g in known.values() if g), *sorted(named)]))
+        goals = goals or tuple(dict.fromkeys([*(g for g in stock.values() if g), *sorted(named)]))
         if not goals:
             raise self.fault("no goal stands anywhere; name one at a place")
         name = str(self.entry["id"])
@@ -208,7 +208,7 @@ class _Reader:
             size=self.size(),
             walls=frozenset(self.cells("wall", self.world.get("wall", []))),
             places=places,
-            known=known,
+            known=stock,
             alternatives=alternatives,
             actual=self.actual(alternatives, doubted),
             goals=goals,
@@ -233,14 +233,14 @@ class _Reader:
             )
         options = []
         for place in doubted:
-            given = self.said[f"possible_{place}"]
-            if not isinstance(given, list) or not given:
+            possible = self.said[f"possible_{place}"]
+            if not isinstance(possible, list) or not possible:
                 raise self.fault(
-                    f"possible_{place} is {quoted(given)}; list goals, null for nothing"
+                    f"possible_{place} is {quoted(possible)}; list goals, null for nothing"
                 )
-            options.append([self.goal(each, f"possible_{place}") for each in given])
+            options.append([self.goal(each, f"possible_{place}") for each in possible])
         combined = [dict(zip(doubted, each, strict=True)) for each in itertools.product(*options)]
-        return {_joined(held.values()): held for held in combined}
+        return {_joined(contents.values()): contents for contents in combined}
 
     def listed(
         self, listed: object, places: Mapping[str, FilmCell]
@@ -250,8 +250,8 @@ class _Reader:
         if (
             not isinstance(each_held, list)
             or not each_held
-            or not all(isinstance(held, Mapping) and held for held in each_held)
-            or any(set(held) != set(each_held[0]) or set(held) - set(places) for held in each_held)
+            or not all(isinstance(case, Mapping) and case for case in each_held)
+            or any(set(case) != set(each_held[0]) or set(case) - set(places) for case in each_held)
         ):
             raise self.fault(
                 "alternatives do not all name goals for the same places of its world; give "
@@ -259,24 +259,24 @@ class _Reader:
             )
         order = [place for place in places if place in each_held[0]]
         read = [
-            {place: self.goal(held[place], "alternatives") for place in order} for held in each_held
+            {place: self.goal(case[place], "alternatives") for place in order} for case in each_held
         ]
-        names = [_joined(held.values()) for held in read]
+        names = [_joined(case.values()) for case in read]
         if isinstance(listed, Mapping):
             names = [str(name) for name in listed]
         return dict(zip(names, read, strict=True))
 
     def goals(self, named: Iterable[str]) -> tuple[str, ...]:
         """Return the goals that are named in order, by `goals` or by a key of judgments."""
-        given = self.said.get("goals")
-        if given is not None:
-            if not isinstance(given, list) or not given or not all(map(_is_name, given)):
-                raise self.fault(f"goals are {quoted(given)}; list their names")
-            return tuple(dict.fromkeys(given))
+        listed = self.said.get("goals")
+        if listed is not None:
+            if not isinstance(listed, list) or not listed or not all(map(_is_name, listed)):
+                raise self.fault(f"goals are {quoted(listed)}; list their names")
+            return tuple(dict.fromkeys(listed))
         for key in self.human:
-            found = _JUDGED.fullmatch(key)
-            if found and found["about"] == "desire":
-                words = found["names"].split("_")
+            match = _JUDGED.fullmatch(key)
+            if match and match["about"] == "desire":
+                words = match["names"].split("_")
                 if len(words) == 1 and words[0] not in named and words[0].isupper():
                     words = list(words[0])
                 return tuple(dict.fromkeys(words))
@@ -291,16 +291,16 @@ class _Reader:
         distributed over the other places in order. If there are none, each other place holds a goal
         with the name of the place.
         """
-        known: dict[str, str | None] = {}
+        contents: dict[str, str | None] = {}
         silent = []
         for place in places:
             for key in (f"true_{place}", f"{place}_holds"):
                 if key in self.said:
-                    known[place] = self.goal(self.said[key], key)
+                    contents[place] = self.goal(self.said[key], key)
                     break
             else:
                 silent.append(place)
-        used = {*named, *known.values()}
+        used = {*named, *contents.values()}
         left = [goal for goal in goals if goal not in used]
         if left and len(left) < len(silent):
             raise self.fault(
@@ -309,36 +309,36 @@ class _Reader:
             )
         if len(left) > len(silent) > 0:
             raise self.fault(f"{', '.join(left)} may each be at {silent[0]}; add true_{silent[0]}")
-        known.update(zip(silent, left or silent, strict=False))
-        return {place: known[place] for place in places}
+        contents.update(zip(silent, left or silent, strict=False))
+        return {place: contents[place] for place in places}
 
     def actual(
         self, alternatives: Mapping[str, Mapping[str, str | None]], doubted: Sequence[str]
     ) -> tuple[str, ...]:
         """Return the alternatives that the observer holds possible."""
-        given = self.said.get("actual")
-        if given is not None and given != _UNKNOWN:
-            if given not in alternatives:
+        truth = self.said.get("actual")
+        if truth is not None and truth != _UNKNOWN:
+            if truth not in alternatives:
                 names = ", ".join(alternatives)
                 raise self.fault(
-                    f"actual is {quoted(given)}; give {quoted(_UNKNOWN)} or one of {names}"
+                    f"actual is {quoted(truth)}; give {quoted(_UNKNOWN)} or one of {names}"
                 )
-            return (str(given),)
+            return (str(truth),)
         possible = list(alternatives)
         for place in doubted:
             key = f"true_{place}"
             if key not in self.said:
-                if given is None and not self.asks_for_locations:
+                if truth is None and not self.asks_for_locations:
                     raise self.fault(f'{key} is missing; give a goal, null or "{_UNKNOWN}"')
                 continue
             value = self.said[key]
             if value == _UNKNOWN:
                 continue
             true = self.goal(value, key)
-            options = {held[place] for held in alternatives.values()}
+            options = {case[place] for case in alternatives.values()}
             if true not in options:
-                told = ", ".join(sorted(goal or "null" for goal in options))
-                raise self.fault(f"{key} is {quoted(value)}, which is none of the possible: {told}")
+                text = ", ".join(sorted(goal or "null" for goal in options))
+                raise self.fault(f"{key} is {quoted(value)}, which is none of the possible: {text}")
             possible = [name for name in possible if alternatives[name][place] == true]
         if not possible:
             raise self.fault("no alternative has what its true_spot keys say; correct one of them")
@@ -348,7 +348,7 @@ class _Reader:
     def asks_for_locations(self) -> bool:
         """Return True if people judged locations."""
         matches = filter(None, map(_JUDGED.fullmatch, self.human))
-        return any(_KINDS[found["about"]] == "locations" for found in matches)
+        return any(_KINDS[match["about"]] == "locations" for match in matches)
 
     def judgments(
         self, film: Film
@@ -357,45 +357,45 @@ class _Reader:
         people: dict[JudgedPart, dict[str, float]] = {}
         errors: dict[JudgedPart, dict[str, float]] = {}
         for key, values in self.human.items():
-            found = _JUDGED.fullmatch(key)
-            if found is None:
+            match = _JUDGED.fullmatch(key)
+            if match is None:
                 if "_mean" in key:
                     raise self.fault(
                         f"human.{key} is not understood; name desire, belief or location, then "
                         "goals or alternatives, as in belief_LMnone_mean_norm"
                     )
                 continue
-            about = _KINDS[found["about"]]
-            names = self.judged(film, key, found, about)
+            about = _KINDS[match["about"]]
+            names = self.judged(film, key, match, about)
             means = self.numbers(key, values, len(names))
-            if about != "desires" and found["scale"] == _RATINGS:
+            if about != "desires" and match["scale"] == _RATINGS:
                 means = self.normalised(key, means)
             rated = {n: value for n, value in zip(names, means, strict=True) if value is not None}
             if set(rated) & set(people.get(about, {})):
                 raise self.fault(f"human.{key} judges again what another key judges; keep one")
             people[about] = {**people.get(about, {}), **rated}
-            spread = self.human.get(f"{found['about']}_se")
+            spread = self.human.get(f"{match['about']}_se")
             if spread is not None and isinstance(spread, list) and len(spread) == len(names):
-                spreads = self.numbers(f"{found['about']}_se", spread, len(names))
-                told = zip(names, spreads, strict=True)
-                errors[about] = {name: value for name, value in told if value is not None}
+                spreads = self.numbers(f"{match['about']}_se", spread, len(names))
+                pairs = zip(names, spreads, strict=True)
+                errors[about] = {name: value for name, value in pairs if value is not None}
         return people, errors
 
-    def judged(self, film: Film, key: str, found: re.Match[str], about: JudgedPart) -> list[str]:
+    def judged(self, film: Film, key: str, match: re.Match[str], about: JudgedPart) -> list[str]:
         """Return the subject of a key's values: goals, alternatives, or contents of places."""
-        words, place = found["names"].split("_"), found["place"]
+        words, place = match["names"].split("_"), match["place"]
         if about == "desires":
             names: list[str] | None = self.spelled(words, film.goals)
-            known: Iterable[str] = film.goals
+            named_there: Iterable[str] = film.goals
         elif all(word in film.alternatives for word in words):
-            names, known = words, film.alternatives
+            names, named_there = words, film.alternatives
         else:
             names = self.contents(film, words, place)
-            known = film.events
-        if names is None or len(set(names)) < len(names) or not set(names) <= set(known):
+            named_there = film.events
+        if names is None or len(set(names)) < len(names) or not set(names) <= set(named_there):
             raise self.fault(
-                f"human.{key} is not understood: {quoted(found['names'])} does not spell different "
-                f"names of {', '.join(known)}"
+                f"human.{key} is not understood: {quoted(match['names'])} does not spell different "
+                f"names of {', '.join(named_there)}"
             )
         return names
 
@@ -409,7 +409,7 @@ class _Reader:
             return None
         if place is not None and len(doubted) > 1:
             return [event_name(place, goal) for goal in spelled]
-        by_contents = {_joined(held.values()): name for name, held in film.alternatives.items()}
+        by_contents = {_joined(case.values()): name for name, case in film.alternatives.items()}
         if len(spelled) % len(doubted):
             return None
         chunks = [
@@ -422,13 +422,13 @@ class _Reader:
         """Split words into names and return these; None if a word does not consist of names."""
         longest_first = sorted(names, key=len, reverse=True)
         pattern = re.compile("|".join(map(re.escape, longest_first)))
-        found: list[str] = []
+        spelling: list[str] = []
         for word in words:
             parts = pattern.findall(word)
             if "".join(parts) != word:
                 return None
-            found += parts
-        return found
+            spelling += parts
+        return spelling
 
     def numbers(self, key: str, values: object, count: int) -> list[float | None]:
         """Return numbers, None where one is missing."""
@@ -472,11 +472,11 @@ class _Reader:
 
     def size(self) -> tuple[int, int]:
         """Return the size of the floor."""
-        given = self.world.get("size")
-        width, height = self.cell(given, "size")
+        size = self.world.get("size")
+        width, height = self.cell(size, "size")
         if min(width, height) < 1 or width * height > _MOST_CELLS:
             raise self.fault(
-                f"size is {quoted(given)}; give two numbers from 1, whose product is at "
+                f"size is {quoted(size)}; give two numbers from 1, whose product is at "
                 f"most {_MOST_CELLS}"
             )
         return width, height
@@ -496,17 +496,17 @@ class _Reader:
             raise self.fault(f"{key} names the goal {quoted(value)}; give a name or null")
         return str(value)
 
-    def cells(self, key: str, given: object) -> list[FilmCell]:
+    def cells(self, key: str, listed: object) -> list[FilmCell]:
         """Return a list of cells."""
-        if not isinstance(given, list):
-            raise self.fault(f"{key} is {quoted(given)}; list cells as [x, y]")
-        return [self.cell(each, key) for each in given]
+        if not isinstance(listed, list):
+            raise self.fault(f"{key} is {quoted(listed)}; list cells as [x, y]")
+        return [self.cell(each, key) for each in listed]
 
-    def cell(self, given: object, key: str) -> FilmCell:
+    def cell(self, numbers: object, key: str) -> FilmCell:
         """Return two whole numbers."""
-        if not isinstance(given, list) or len(given) != 2 or not all(map(_is_whole, given)):
-            raise self.fault(f"{key} has {quoted(given)}; give two whole numbers [x, y]")
-        return int(given[0]), int(given[1])
+        if not isinstance(numbers, list) or len(numbers) != 2 or not all(map(_is_whole, numbers)):
+            raise self.fault(f"{key} has {quoted(numbers)}; give two whole numbers [x, y]")
+        return int(numbers[0]), int(numbers[1])
 
 
 def _check_size(film: Film, parameters: FilmParameters) -> None:
@@ -524,19 +524,19 @@ def _owner(entry: object, number: int) -> str:
     return f"film {entry['id']}"
 
 
-def _groups(given: object) -> dict[str, str]:
+def _groups(groups: object) -> dict[str, str]:
     """Return the group of each film by id."""
-    if not isinstance(given, Mapping) or not all(isinstance(ids, list) for ids in given.values()):
-        raise InputError(f"groups are {quoted(given)}; give lists of film ids by name")
-    return {str(film): str(name) for name, films in given.items() for film in films}
+    if not isinstance(groups, Mapping) or not all(isinstance(ids, list) for ids in groups.values()):
+        raise InputError(f"groups are {quoted(groups)}; give lists of film ids by name")
+    return {str(film): str(name) for name, films in groups.items() for film in films}
 
 
-def _list(given: object, owner: str, key: str) -> list[Any]:
-    if not isinstance(given, list) or not given:
+def _list(listed: object, owner: str, key: str) -> list[Any]:
+    if not isinstance(listed, list) or not listed:
         raise InputError(
             f"{owner} has no list of {key}, which a file of films in this format must have"
         )
-    return given
+    return listed
 
 
 def _joined(goals: Iterable[str | None]) -> str:

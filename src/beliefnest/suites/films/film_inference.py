@@ -61,11 +61,11 @@ def staged(film: Film) -> Nest:
     for cell in film.walls:
         x, _, z = _floor(cell)
         blocks[x, 1, z] = blocks[x, 2, z] = _WALL
-    held = dict(film.known)
-    held |= dict.fromkeys(next(iter(film.alternatives.values())), None)
+    contents = dict(film.known)
+    contents |= dict.fromkeys(next(iter(film.alternatives.values())), None)
     if not film.observer_doubts:
-        held |= film.alternatives[film.actual[0]]
-    for place, goal in held.items():
+        contents |= film.alternatives[film.actual[0]]
+    for place, goal in contents.items():
         blocks[_floor(film.places[place])] = _block(film, goal)
     feet = [(x - 0.5, 1.0, z - 0.5) for x, z in film.path]
     world = ScriptedWorld(((0, 0, 0), (width - 1, 2, depth - 1)), blocks, agents={AGENT: feet[0]})
@@ -77,7 +77,7 @@ def staged(film: Film) -> Nest:
 
 
 def model_of(
-    film: Film, parameters: FilmParameters, lesion: Lesion | None = None, known: str | None = None
+    film: Film, parameters: FilmParameters, lesion: Lesion | None = None, truth: str | None = None
 ) -> MindModel:
     """Return the model of a film's agent.
 
@@ -85,7 +85,7 @@ def model_of(
         film: The film.
         parameters: Parameters of the model.
         lesion: The part that the model lacks; None: none.
-        known: For the lesion `true_belief`, the true alternative, which the agent knows.
+        truth: For the lesion `true_belief`, the true alternative, which the agent knows.
     """
     names = list(film.alternatives)
     grid = grid_for(film, parameters) or 1
@@ -93,10 +93,10 @@ def model_of(
     actual: str | Mapping[str, float] | None = None
     if film.observer_doubts:
         actual = dict.fromkeys(film.actual, 1 / len(film.actual))
-    if lesion == "true_belief" and known is not None:
+    if lesion == "true_belief" and truth is not None:
         # Keep only the corner of the grid with the most credence in the true alternative.
-        credences = credences[[int(credences[:, names.index(known)].argmax())]]
-        actual = known if film.observer_doubts else None
+        credences = credences[[int(credences[:, names.index(truth)].argmax())]]
+        actual = truth if film.observer_doubts else None
     costs = lesion != "no_cost"
     return MindModel(
         agent=AGENT,
@@ -105,10 +105,10 @@ def model_of(
         doubt={
             name: {
                 "blocks": {
-                    _floor(film.places[place]): _block(film, goal) for place, goal in held.items()
+                    _floor(film.places[place]): _block(film, goal) for place, goal in case.items()
                 }
             }
-            for name, held in film.alternatives.items()
+            for name, case in film.alternatives.items()
         },
         credences=credences,
         actual=actual,
@@ -131,20 +131,20 @@ def judge(film: Film, parameters: FilmParameters, lesion: Lesion | None = None) 
     cases = film.actual if lesion == "true_belief" else (None,)
     try:
         with staged(film) as nest:
-            models = [model_of(film, parameters, lesion, known) for known in cases]
-            found = [nest["/"].infer(model, ended=film.ended) for model in models]
+            models = [model_of(film, parameters, lesion, case) for case in cases]
+            inferences = [nest["/"].infer(model, ended=film.ended) for model in models]
     except InputError as error:
         raise InputError(f"film {film.name}: {error}") from None
-    evidence = np.array([inference.log_evidence for inference in found])
+    evidence = np.array([inference.log_evidence for inference in inferences])
     possible = evidence > -np.inf
     if not possible.any():
-        evidence = np.zeros(len(found))
+        evidence = np.zeros(len(inferences))
     shares = np.exp(evidence - evidence.max())
     shares /= shares.sum()
 
     def mean(factor: str) -> float:
-        told = zip(shares.tolist(), found, strict=True)
-        return fsum(share * inference.mean(factor) for share, inference in told if share > 0)
+        weighted = zip(shares.tolist(), inferences, strict=True)
+        return fsum(share * inference.mean(factor) for share, inference in weighted if share > 0)
 
     def means(kind: str) -> dict[str, float]:
         each = {name: mean(f"{kind}.{name}") for name in film.alternatives}
@@ -159,7 +159,7 @@ def judge(film: Film, parameters: FilmParameters, lesion: Lesion | None = None) 
     }
     if film.observer_doubts:
         model["locations"] = means("actual")
-    return Judgment(film, model, None if possible.any() else str(found[0].impossible))
+    return Judgment(film, model, None if possible.any() else str(inferences[0].impossible))
 
 
 def _block(film: Film, goal: str | None) -> str:

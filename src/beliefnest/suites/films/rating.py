@@ -236,14 +236,16 @@ def _goal_words(model: MindModel, goal: str, state: State) -> str:
 
 
 def _edits_words(alternative: Alternative) -> str:
-    told = [f"{text} at {_place(at)}" for at, text in alternative.blocks.items()]
-    told += [
+    parts = [f"{text} at {_place(at)}" for at, text in alternative.blocks.items()]
+    parts += [
         f"{', '.join(f'{n} {name}' for name, n in items.items()) or 'nothing'} in the container at "
         f"{_place(at)}"
         for at, items in alternative.containers.items()
     ]
-    told += [f"{agent} at ({feet[0]:g}, {feet[2]:g})" for agent, feet in alternative.agents.items()]
-    return ", ".join(told)
+    parts += [
+        f"{agent} at ({feet[0]:g}, {feet[2]:g})" for agent, feet in alternative.agents.items()
+    ]
+    return ", ".join(parts)
 
 
 def _actual_words(model: MindModel, state: State) -> str:
@@ -254,16 +256,16 @@ def _actual_words(model: MindModel, state: State) -> str:
         weights = model.actual_weights or {}
         left = [name for name, weight in weights.items() if weight > 0]
         return f"You do not know either which it is: {' or '.join(left)}."
-    held = [each.name for each in model.alternatives if _agrees(each, state)]
-    return f"As far as you know, it is {' or '.join(held) or 'none of them'}."
+    possible = [each.name for each in model.alternatives if _agrees(each, state)]
+    return f"As far as you know, it is {' or '.join(possible) or 'none of them'}."
 
 
 def _agrees(alternative: Alternative, state: State) -> bool:
     """Return False if an observer holds something else in a doubted block or container."""
     registry = Registry.load()
     for at, text in alternative.blocks.items():
-        known = state.blocks[at]
-        if known is not None and known != registry.text(registry.state_id(text)):
+        block = state.blocks[at]
+        if block is not None and block != registry.text(registry.state_id(text)):
             return False
     for at, items in alternative.containers.items():
         container = state.containers.get(at)

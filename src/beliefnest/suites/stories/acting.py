@@ -97,21 +97,21 @@ def _putting(thing: str, target: Place, plan: FloorPlan) -> str:
     return f"await depositItemIntoChest(bot, {_vec3(plan.places[target])}, {items})\n"
 
 
-def _claims(told: Tell, plan: FloorPlan) -> list[Claim]:
-    if not told.is_claimed:
+def _claims(tell: Tell, plan: FloorPlan) -> list[Claim]:
+    if not tell.is_claimed:
         return []
-    make = Claim.located if told.is_there else Claim.absent
-    return [make(plan.items[told.thing], plan.places[told.place])]
+    make = Claim.located if tell.is_there else Claim.absent
+    return [make(plan.items[tell.thing], plan.places[tell.place])]
 
 
-def _telling(told: Tell, plan: FloorPlan) -> str:
-    make = "located" if told.is_there else "absent"
-    item, place = json.dumps(plan.items[told.thing]), _vec3(plan.places[told.place])
-    claims = f", [{make}({item}, {place})]" if told.is_claimed else ""
-    said = f"{json.dumps(told.text)}{claims}"
-    if told.hearer is None:
+def _telling(tell: Tell, plan: FloorPlan) -> str:
+    make = "located" if tell.is_there else "absent"
+    item, place = json.dumps(plan.items[tell.thing]), _vec3(plan.places[tell.place])
+    claims = f", [{make}({item}, {place})]" if tell.is_claimed else ""
+    said = f"{json.dumps(tell.text)}{claims}"
+    if tell.hearer is None:
         return f"await say(bot, {said})"
-    return f"await whisper(bot, {json.dumps(told.hearer)}, {said})"
+    return f"await whisper(bot, {json.dumps(tell.hearer)}, {said})"
 
 
 def _walk(block: Position, shuts: Sequence[str] = ()) -> str:

@@ -47,8 +47,8 @@ def data_fault(story: Story, question: Question, expected: str | None) -> str | 
 
 def is_told_of(story: Story, question: Question) -> bool:
     """Return True if the answer may rest on what somebody says of the thing."""
-    told = (act for act in story.acts if isinstance(act, Tell))
-    return bool(question.believers) and any(act.thing == question.thing for act in told)
+    tells = (act for act in story.acts if isinstance(act, Tell))
+    return bool(question.believers) and any(act.thing == question.thing for act in tells)
 
 
 def _states(

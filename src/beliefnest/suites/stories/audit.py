@@ -86,24 +86,24 @@ def read_published(path: Path) -> ReadStories:
 
 
 def audit(
-    found: ReadStories, on_story: Callable[[str, int, int], None] = lambda what, done, total: None
+    batch: ReadStories, on_story: Callable[[str, int, int], None] = lambda what, done, total: None
 ) -> Audit:
     """Play stories, and compare their labels with what follows from them.
 
     Args:
-        found: The stories.
+        batch: The stories.
         on_story: Function that receives the progress.
 
     Raises:
         BeliefNestError: The world failed.
     """
     findings: list[Finding] = []
-    for number, asked in enumerate(found.stories):
-        on_story(f"story {number + 1}", number, len(found.stories))
+    for number, asked in enumerate(batch.stories):
+        on_story(f"story {number + 1}", number, len(batch.stories))
         findings += _of_story(asked)
-    items = sum(len(each.items) for each in found.stories)
+    items = sum(len(each.items) for each in batch.stories)
     wrong = tuple(each for each in findings if each.is_wrong)
-    return Audit(items, wrong, tuple(each for each in findings if not each.is_wrong), found.unread)
+    return Audit(items, wrong, tuple(each for each in findings if not each.is_wrong), batch.unread)
 
 
 def _of_story(asked: StoryItems) -> Iterator[Finding]:

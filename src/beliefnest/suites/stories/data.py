@@ -140,20 +140,20 @@ def read_items(path: Path, rows: Collection[int] | None = None) -> ReadStories:
         where = f"{path}, row {number}"
         try:
             row = decode_json(bytes(raw), _Row)
-            told = _told_in(row.story)
-            if told not in stories:
-                lines, faults = parse_all(told)
+            lines_of_story = _told_in(row.story)
+            if lines_of_story not in stories:
+                lines, faults = parse_all(lines_of_story)
                 if faults:
                     unread.append(Unread(where, tuple(map(str, faults))))
                     continue
-                stories[told] = story_of(lines)
-            item = _item(number, row, stories[told])
+                stories[lines_of_story] = story_of(lines)
+            item = _item(number, row, stories[lines_of_story])
         except (InputError, msgspec.DecodeError) as error:
             unread.append(Unread(where, (str(error),)))
             continue
-        items.setdefault(told, []).append(item)
-    found = tuple(StoryItems(story, tuple(items[t])) for t, story in stories.items() if t in items)
-    return ReadStories(found, tuple(unread))
+        items.setdefault(lines_of_story, []).append(item)
+    ready = tuple(StoryItems(story, tuple(items[t])) for t, story in stories.items() if t in items)
+    return ReadStories(ready, tuple(unread))
 
 
 _BYTE = re.compile(r"\(byte (\d+)\)")
@@ -161,9 +161,9 @@ _BYTE = re.compile(r"\(byte (\d+)\)")
 
 def line_of(text: bytes, error: msgspec.DecodeError) -> str:
     """Return the line of a text at which a decoder failed, such as `, line 3`."""
-    found = _BYTE.search(str(error))
-    if found is not None:
-        at = min(int(found[1]), len(text))
+    match = _BYTE.search(str(error))
+    if match is not None:
+        at = min(int(match[1]), len(text))
     elif "truncated" in str(error):
         at = len(text.rstrip())
     else:

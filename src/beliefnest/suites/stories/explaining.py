@@ -27,10 +27,10 @@ def explain_answer(
         believers = question.believers[:depth]
         if depth > 1 and believers[-1] == believers[-2]:
             continue
-        found = played.answer(
+        answer_of_nest = played.answer(
             Question(believers, question.thing, question.at_beginning, question.text)
         )
-        lines.append(_holds(played, found))
+        lines.append(_holds(played, answer_of_nest))
     return (*lines, *_perceptions(played, question, answer, expected))
 
 
@@ -40,12 +40,12 @@ def _block(
     """Explain an answer about a door or a sign."""
     if question.door is not None:
         what, place = f"the door of the {question.door} is", played.plan.doors[question.door]
-        found, wanted = (text or "unknown" for text in (answer.text, expected))
+        there, wanted = (text or "unknown" for text in (answer.text, expected))
     else:
         room = str(question.sign)
         what, place = f"the sign of the {room} says", played.plan.signs[room]
-        found, wanted = map(_saying, (answer.text, expected))
-    line = f"{what} {found} in {answer.path}, expected {wanted}"
+        there, wanted = map(_saying, (answer.text, expected))
+    line = f"{what} {there} in {answer.path}, expected {wanted}"
     return (line, *str(played.asked(question).explain(block=place)).splitlines())
 
 
@@ -60,8 +60,8 @@ def _perceptions(
     first = played.story.things[question.thing]
     rooms = played.story.rooms if isinstance(first, HandOver) else (first.room,)
     wanted = [] if expected is None else [Place(room, expected) for room in rooms]
-    found = (answer.place, *wanted)
-    places = dict.fromkeys(p for p in found if p is not None and p in played.plan.places)
+    places_named = (answer.place, *wanted)
+    places = dict.fromkeys(p for p in places_named if p is not None and p in played.plan.places)
     simulator = played.asked(question)
     lines = []
     for place in places:
@@ -74,12 +74,12 @@ def _perceptions(
     return lines
 
 
-def _holds(played: PlayedStory, found: StoryAnswer) -> str:
-    if found.place is None or found.basis is None:
-        return f"{found.path} holds the {found.thing} in no container at tick {found.tick}"
+def _holds(played: PlayedStory, answer: StoryAnswer) -> str:
+    if answer.place is None or answer.basis is None:
+        return f"{answer.path} holds the {answer.thing} in no container at tick {answer.tick}"
     return (
-        f"{found.path} holds the {found.thing} in the {found.place.container} of the "
-        f"{found.place.room}, {_since(played, found.basis)}"
+        f"{answer.path} holds the {answer.thing} in the {answer.place.container} of the "
+        f"{answer.place.room}, {_since(played, answer.basis)}"
     )
 
 

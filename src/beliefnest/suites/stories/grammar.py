@@ -340,7 +340,7 @@ def parse_line(number: int, text: str, unit: str = "line") -> Line:
 
 def _parse(line: str, place: str) -> Sentence:
     # Keep the text of a sign as it is.
-    spaced = _SPACE.sub(lambda found: found["text"] or " ", _NUMBER.sub("", line, count=1))
+    spaced = _SPACE.sub(lambda space: space["text"] or " ", _NUMBER.sub("", line, count=1))
     words = spaced.strip().removesuffix(".")
     for form, kind in _KINDS:
         match = form.fullmatch(words)
@@ -358,27 +358,27 @@ def _parse(line: str, place: str) -> Sentence:
 
 def _sentence(kind: type[Any], match: re.Match[str]) -> Sentence:
     """Return the sentence of a match; a thing without a group is `it`."""
-    given: dict[str, Any] = {"thing": IT}
+    parts: dict[str, Any] = {"thing": IT}
     for name, text in match.groupdict().items():
         match name:
             case _ if text is None:
                 pass
             case "agents" | "names":
-                given[name] = tuple(dict.fromkeys(_JOINT.split(text)))
+                parts[name] = tuple(dict.fromkeys(_JOINT.split(text)))
             case "is_there" | "opens":
-                given[name] = text in ("is", "opened")
+                parts[name] = text in ("is", "opened")
             case _:
-                given[name] = text
-    sentence: Sentence = kind(**{n: given[n] for n in kind.__struct_fields__ if n in given})
+                parts[name] = text
+    sentence: Sentence = kind(**{n: parts[n] for n in kind.__struct_fields__ if n in parts})
     return sentence
 
 
 def _check_names(match: re.Match[str], place: str, line: str) -> None:
     """Refuse words in place of names; only a thing may be `it`."""
-    for kind, found in match.groupdict().items():
-        if kind in ("about", "opens", "is_there", "text") or found is None:
+    for kind, names in match.groupdict().items():
+        if kind in ("about", "opens", "is_there", "text") or names is None:
             continue
-        for name in _JOINT.split(found) if kind in ("agents", "names") else (found,):
+        for name in _JOINT.split(names) if kind in ("agents", "names") else (names,):
             if _NOBODY.fullmatch(name) and (kind, name) != ("thing", IT):
                 raise InputError(
                     f"{place}: {quoted(line)}: {quoted(name)} is no name; write the name"

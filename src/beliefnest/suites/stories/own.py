@@ -73,16 +73,16 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> ReadStories:
             continue
         where = f"{path}, line {number}"
         try:
-            told = decode_json(line, _OwnStory)
+            own_story = decode_json(line, _OwnStory)
         except msgspec.DecodeError as error:
             unread.append(Unread(where, (_form_fault(error),)))
             continue
-        story, faults = _story(number, told)
+        story, faults = _story(number, own_story)
         if story is not None:
             stories.append(story)
             unread += [Unread(where, (fault,)) for fault in faults]
         else:
-            unread.append(Unread(where, faults, max(1, len(told.questions))))
+            unread.append(Unread(where, faults, max(1, len(own_story.questions))))
     return ReadStories(tuple(stories), tuple(unread))
 
 
@@ -102,18 +102,18 @@ def _form_fault(fault: msgspec.DecodeError) -> str:
         words += nearest_or_all(what.split("'")[1], kinds)
     if what.startswith("Invalid enum value"):
         words += f"; allowed are {', '.join(map(str, get_args(fields.get(path))))}"
-    where = _EVENT.sub(lambda found: f"event {int(found[1]) + 1}: ", path).removesuffix(": ")
+    where = _EVENT.sub(lambda event: f"event {int(event[1]) + 1}: ", path).removesuffix(": ")
     return f"{where}: {words}" if where else words
 
 
-def _story(number: int, told: _OwnStory) -> tuple[StoryItems | None, tuple[str, ...]]:
+def _story(number: int, own_story: _OwnStory) -> tuple[StoryItems | None, tuple[str, ...]]:
     """Return a story, whose events are its lines, and what cannot be read of its questions.
 
     None: the events cannot be read, for the reasons beside it.
     """
     lines: list[Line] = []
     faults: list[str] = []
-    for at, event in enumerate(told.events, 1):
+    for at, event in enumerate(own_story.events, 1):
         try:
             lines.append(_line(at, event))
         except InputError as error:
@@ -125,7 +125,7 @@ def _story(number: int, told: _OwnStory) -> tuple[StoryItems | None, tuple[str, 
     except InputError as error:
         return None, (str(error),)
     items: list[BatteryItem] = []
-    for asked in told.questions:
+    for asked in own_story.questions:
         try:
             item = BatteryItem(number, _question(asked), asked.answer)
             check_question(story, item.question)
@@ -134,7 +134,7 @@ def _story(number: int, told: _OwnStory) -> tuple[StoryItems | None, tuple[str, 
             faults.append(str(error))
         else:
             items.append(item)
-    knowing = Knowing(told.containers, told.testimony, told.sincere)
+    knowing = Knowing(own_story.containers, own_story.testimony, own_story.sincere)
     return StoryItems(story, tuple(items), knowing), tuple(faults)
 
 

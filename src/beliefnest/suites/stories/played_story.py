@@ -167,8 +167,8 @@ class PlayedStory:
         try:
             for path in sorted({question.path for question in asked}, key=_deepest_first):
                 _ = nest[path].state
-            told = story if reader is None else _in_words_alone(story)
-            ends = _play(told, plan, nest, world, grace)
+            as_read = story if reader is None else _in_words_alone(story)
+            ends = _play(as_read, plan, nest, world, grace)
         except BaseException:
             nest.close()
             raise
@@ -211,8 +211,8 @@ class PlayedStory:
         """
         asked = tuple(questions)
         by_depth = sorted(set(asked), key=lambda question: _deepest_first(question.path))
-        found = {question: self.answer(question) for question in by_depth}
-        return tuple(found[question] for question in asked)
+        answers = {question: self.answer(question) for question in by_depth}
+        return tuple(answers[question] for question in asked)
 
     def line_at(self, tick: int) -> int | None:
         """Return the index of the line during which a tick passed; None: before the first."""
@@ -232,7 +232,7 @@ class PlayedStory:
     def _find(self, simulator: Simulator | PastSimulator, thing: str) -> StoryAnswer:
         item = self.plan.items[thing]
         containers = simulator.state.containers
-        holding = [p for p, held in sorted(containers.items()) if held.items.get(item)]
+        holding = [p for p, content in sorted(containers.items()) if content.items.get(item)]
         if not holding:
             return StoryAnswer(simulator.path, simulator.tick, thing, None, None)
         latest = max(holding, key=lambda position: containers[position].basis.observed_at)

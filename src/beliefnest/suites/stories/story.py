@@ -371,9 +371,9 @@ class _Reader:
             case Placed(agent, thing, container):
                 return self._put(number, agent, thing, container)
             case Taken(agent, thing, source):
-                held = self._held(line, agent, thing, source)
+                source_held = self._held(line, agent, thing, source)
                 self.now[thing] = HandOver(agent)
-                return Take(agent, thing, held)
+                return Take(agent, thing, source_held)
             case Opened(agent, container):
                 room = self._room_of(line, agent, self._room_with(container))
                 return LookInto(
@@ -409,9 +409,9 @@ class _Reader:
     def _exit(self, number: int, agents: Sequence[str], room: str | None) -> Go:
         line = self.lines[number]
         if room is None:
-            known = {self.whereabouts[name] for name in agents if name in self.whereabouts}
-            room = known.pop() if known else self._room_near(number)
-            if room is None or known:
+            rooms = {self.whereabouts[name] for name in agents if name in self.whereabouts}
+            room = rooms.pop() if rooms else self._room_near(number)
+            if room is None or rooms:
                 raise line.fault("they are in no room together; name the room")
         shuts = self._shuts(room, agents)
         self._check_inside(line, agents, room)
@@ -433,9 +433,9 @@ class _Reader:
 
     def _check_inside(self, line: Line, agents: Sequence[str], room: str) -> None:
         for agent in agents:
-            found = self._since_beginning(agent, room)
-            if found != room:
-                where = "in no room" if found is None else f"in the {found}"
+            room_before = self._since_beginning(agent, room)
+            if room_before != room:
+                where = "in no room" if room_before is None else f"in the {room_before}"
                 raise line.fault(f"{agent} is {where}; let {agent} enter the {room} first")
 
     def _since_beginning(self, agent: str, room: str) -> str | None:
@@ -484,37 +484,37 @@ class _Reader:
             raise line.fault(f"the {thing} is in the {source.container}, not in the {named}")
         return source
 
-    def _tell(self, line: Line, told: Told | Whispered) -> Tell:
-        hearer = told.hearer if isinstance(told, Whispered) else None
-        for name in (told.agent, hearer):
+    def _tell(self, line: Line, words: Told | Whispered) -> Tell:
+        hearer = words.hearer if isinstance(words, Whispered) else None
+        for name in (words.agent, hearer):
             if name is not None and name not in self.whereabouts:
                 raise line.fault(f"{name} was in no room so far; let {name} enter one first")
-        if told.agent == hearer:
-            raise line.fault(f"{told.agent} cannot whisper to itself; name somebody else")
-        if told.thing not in self.now:
-            raise line.fault(f"nothing says where the {told.thing} was; say where it is first")
-        where = self.now[told.thing]
-        room = self._room_with(told.container) or (
+        if words.agent == hearer:
+            raise line.fault(f"{words.agent} cannot whisper to itself; name somebody else")
+        if words.thing not in self.now:
+            raise line.fault(f"nothing says where the {words.thing} was; say where it is first")
+        where = self.now[words.thing]
+        room = self._room_with(words.container) or (
             where.room if isinstance(where, Place) else self.whereabouts[where.agent]
         )
         if room in (None, WAITING_ROOM):
-            raise line.fault(f"nothing says in which room the {told.container} is; say it first")
-        place = self._place(line, str(room), told.container)
-        if isinstance(told, Told):
-            self.said.append((line, told, dict(self.whereabouts)))
-        return Tell(told.agent, hearer, told.thing, place, told.is_there)
+            raise line.fault(f"nothing says in which room the {words.container} is; say it first")
+        place = self._place(line, str(room), words.container)
+        if isinstance(words, Told):
+            self.said.append((line, words, dict(self.whereabouts)))
+        return Tell(words.agent, hearer, words.thing, place, words.is_there)
 
     def notes(self) -> Iterator[str]:
         """Yield remarks on what is said aloud where nobody, or not the addressee, hears it."""
-        for line, told, then in self.said:
+        for line, tell, then in self.said:
             rooms = {name: then.get(name, self.present.get(name)) for name in self.whereabouts}
             inside = {name: None if at == WAITING_ROOM else at for name, at in rooms.items()}
-            here = inside.pop(told.agent)
+            here = inside.pop(tell.agent)
             audience = [name for name, at in inside.items() if at == here]
             hears = f"{listed(audience)} {'hears' if len(audience) == 1 else 'hear'} it"
-            if told.hearer is not None and told.hearer not in audience:
+            if tell.hearer is not None and tell.hearer not in audience:
                 hears = f"{hears} instead" if audience else "nobody hears it"
-                yield f"{line.place}: {quoted(line.text)}: {told.hearer} is not there; {hears}"
+                yield f"{line.place}: {quoted(line.text)}: {tell.hearer} is not there; {hears}"
             elif not audience:
                 yield f"{line.place}: {quoted(line.text)}: nobody else is there; nobody hears it"
 
@@ -526,12 +526,12 @@ class _Reader:
             agent: The agent.
             room: Room of an agent of whom no line said anything; None: such an agent is in none.
         """
-        found = self.whereabouts.get(agent)
+        room_found = self.whereabouts.get(agent)
         if room is not None:
-            found = self._since_beginning(agent, room)
-        if found is None or found == WAITING_ROOM:
+            room_found = self._since_beginning(agent, room)
+        if room_found is None or room_found == WAITING_ROOM:
             raise line.fault(f"{agent} is in no room with containers; let {agent} enter one first")
-        return found
+        return room_found
 
     def _room_with(self, container: str) -> str | None:
         """Return the room of a container; None: it is in none yet, or in several."""
@@ -551,9 +551,9 @@ class _Reader:
             self._place(line, place, thing)
             return
         room = self.stated.get(place) or self._room_near(number)
-        found = self._place(line, room, place)
-        self.first.setdefault(thing, found)
-        if self.now.setdefault(thing, found) != found:
+        located = self._place(line, room, place)
+        self.first.setdefault(thing, located)
+        if self.now.setdefault(thing, located) != located:
             before = self.now[thing]
             if isinstance(before, HandOver):
                 raise line.fault(f"{before.agent} holds the {thing}; say where it is put")

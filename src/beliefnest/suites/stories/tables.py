@@ -51,22 +51,22 @@ def read_table(path: Path) -> ReadStories:
     for number, row in enumerate(_rows(path, text), 1):
         where = f"{path}, row {number}"
         try:
-            told, asked, answer = _parts(row)
-            if told not in stories:
-                lines, faults = _lines(told)
+            story_text, asked, answer = _parts(row)
+            if story_text not in stories:
+                lines, faults = _lines(story_text)
                 if faults:
                     unread.append(Unread(where, tuple(faults)))
                     continue
-                stories[told] = story_of(lines)
+                stories[story_text] = story_of(lines)
             question = parse_question(asked)
-            check_question(stories[told], question)
-            expected = _expected(answer, stories[told], question)
+            check_question(stories[story_text], question)
+            expected = _expected(answer, stories[story_text], question)
         except InputError as error:
             unread.append(Unread(where, (str(error),)))
             continue
-        items.setdefault(told, []).append(BatteryItem(number, question, expected))
-    found = tuple(StoryItems(stories[each], tuple(asked)) for each, asked in items.items())
-    return ReadStories(found, tuple(unread))
+        items.setdefault(story_text, []).append(BatteryItem(number, question, expected))
+    with_items = tuple(StoryItems(stories[each], tuple(asked)) for each, asked in items.items())
+    return ReadStories(with_items, tuple(unread))
 
 
 def _rows(path: Path, text: str) -> Iterator[_Row]:
@@ -109,14 +109,14 @@ def _parts(row: _Row) -> tuple[str, str, list[str]]:
     if isinstance(asked, dict):
         # OpenToM has the answer beside the question.
         row = {**row, **asked}
-    told = "\n".join(_texts(row, "story", _STORY))
+    story_text = "\n".join(_texts(row, "story", _STORY))
     question = "\n".join(_texts(row, "question", _QUESTION))
     answers, options = _texts(row, "answer", _ANSWER), _first(row, _OPTIONS)
-    if told == question:
-        told, question = _last_question(told)
+    if story_text == question:
+        story_text, question = _last_question(story_text)
     if isinstance(options, list):
         answers = [_of_letter(each, options) for each in answers]
-    return told.strip(), question.strip(), answers
+    return story_text.strip(), question.strip(), answers
 
 
 def _of_letter(answer: str, options: Sequence[Any]) -> str:
@@ -196,12 +196,12 @@ def _expected(answers: Sequence[str], story: Story, question: Question) -> str |
 def _named(answer: str, story: Story) -> str:
     """Return the one container that an answer names; the answer itself if it names none."""
     words = f" {_bare(answer)} "
-    known = {_bare(place.container): place.container for place in story.places}
-    found = [each for each in known if f" {each} " in words]
+    names_of_containers = {_bare(place.container): place.container for place in story.places}
+    mentioned = [each for each in names_of_containers if f" {each} " in words]
     # Of `red box` and `box`, the longer name is meant.
-    whole = [a for a in found if not any(a != b and f" {a} " in f" {b} " for b in found)]
+    whole = [a for a in mentioned if not any(a != b and f" {a} " in f" {b} " for b in mentioned)]
     denied = re.search(r"\b(not|no|never)\b|n't\b", answer)
-    return known[whole[0]] if len(whole) == 1 and not denied else answer
+    return names_of_containers[whole[0]] if len(whole) == 1 and not denied else answer
 
 
 def _bare(name: str) -> str:

@@ -42,10 +42,10 @@ def read_tomi(path: Path, rows: Collection[int] | None = None) -> ReadStories:
     stories: list[StoryItems] = []
     unread: list[Unread] = []
     for block in _blocks(text):
-        told, faults = _read(path, block, rows)
+        story, faults = _read(path, block, rows)
         unread += faults
-        if told is not None and told.items:
-            stories.append(told)
+        if story is not None and story.items:
+            stories.append(story)
     return ReadStories(tuple(stories), tuple(unread))
 
 

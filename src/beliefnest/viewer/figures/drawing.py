@@ -94,9 +94,9 @@ def _scene(
     )
 
 
-def wrong_things(found: Iterable[Difference]) -> list[Wrong]:
+def wrong_things(differences: Iterable[Difference]) -> list[Wrong]:
     """Return differences, of which `a` is true, as drawings mark them."""
     return [
         Wrong(each.where, value_words(each.b), value_words(each.a), each.kind == "inventory")
-        for each in found
+        for each in differences
     ]

@@ -38,13 +38,13 @@ class Matter(Protocol[V]):
     def title(self) -> str:
         """The title of the plot."""
 
-    def value(self, held: NodeView) -> V | None:
+    def value(self, view: NodeView) -> V | None:
         """Return the value that a simulator believes; None: nothing is known."""
 
     def words(self, course: ValueCourse[V]) -> list[str]:
         """Return each value of a course in words; an empty text if nothing is known."""
 
-    def is_false(self, real: V | None, held: V) -> bool:
+    def is_false(self, real: V | None, believed: V) -> bool:
         """Return True if reality contradicts the value."""
 
     def act(self, event: PerceivedEvent) -> str:
@@ -63,11 +63,11 @@ class _Amounts:
 
     def words(self, course: ValueCourse[Contents]) -> list[str]:
         """Return the contents in words."""
-        return [_contents_words(held, self.item) for _, held in course]
+        return [_contents_words(content, self.item) for _, content in course]
 
-    def is_false(self, real: Contents | None, held: Contents) -> bool:
+    def is_false(self, real: Contents | None, believed: Contents) -> bool:
         """Return True if the value is false by the rules of `false_beliefs`."""
-        return are_false(real, held)
+        return are_false(real, believed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +90,10 @@ class Contained(_Amounts):
         item = "" if self.item is None else f" and the {_plain(self.item)}"
         return f"What is believed of {with_the(self.label)}{item}"
 
-    def value(self, held: NodeView) -> Contents | None:
+    def value(self, view: NodeView) -> Contents | None:
         """Return the contents of the container."""
-        found = held.containers.get(self.container)
-        return None if found is None else _only(self.item, found.items, complete=found.complete)
+        there = view.containers.get(self.container)
+        return None if there is None else _only(self.item, there.items, complete=there.complete)
 
     def act(self, event: PerceivedEvent) -> str:
         """Return deposits, withdrawals and looks into the container in words."""
@@ -128,18 +128,18 @@ class Carried:
         """The title of the plot."""
         return f"Where the {_plain(self.item)} is believed to be"
 
-    def value(self, held: NodeView) -> Held | None:
+    def value(self, view: NodeView) -> Held | None:
         """Return the number of items at each place; None: no place is known."""
         places: list[tuple[Position | str, Items]] = [
-            *((place, each.items) for place, each in sorted(held.containers.items())),
-            *((name, each.inventory) for name, each in sorted(held.agents.items())),
+            *((place, each.items) for place, each in sorted(view.containers.items())),
+            *((name, each.inventory) for name, each in sorted(view.agents.items())),
         ]
-        found = tuple((where, items[self.item]) for where, items in places if self.item in items)
-        return found or None
+        carried = tuple((where, items[self.item]) for where, items in places if self.item in items)
+        return carried or None
 
     def words(self, course: ValueCourse[Held]) -> list[str]:
         """Return the containers by their names, and the agents that have the item."""
-        return [", ".join(self._at(*each) for each in held or ()) for _, held in course]
+        return [", ".join(self._at(*each) for each in carried or ()) for _, carried in course]
 
     def _at(self, where: Position | str, count: int) -> str:
         many = "" if count == 1 else f"{count} "
@@ -147,10 +147,10 @@ class Carried:
             return f"{many}with {where}"
         return f"{many}in {self.names.get(where, f'container {point_words(where)}')}"
 
-    def is_false(self, real: Held | None, held: Held) -> bool:
+    def is_false(self, real: Held | None, believed: Held) -> bool:
         """Return True if one of the places really has fewer of the item."""
         real_counts = dict(real or ())
-        return any(count > real_counts.get(where, 0) for where, count in held)
+        return any(count > real_counts.get(where, 0) for where, count in believed)
 
     def act(self, event: PerceivedEvent) -> str:
         """Return withdrawals, deposits and gifts of the item in words."""
@@ -181,19 +181,19 @@ class BlockAt:
         """The title of the plot."""
         return f"What is believed of the block at {point_words(self.block)}"
 
-    def value(self, held: NodeView) -> str | None:
+    def value(self, view: NodeView) -> str | None:
         """Return the block."""
-        return self.text(int(held.numbers[self.index]))
+        return self.text(int(view.numbers[self.index]))
 
     def words(self, course: ValueCourse[str]) -> list[str]:
         """Return each block, with the properties in which the blocks of the course differ."""
-        known = list(dict.fromkeys(text for _, text in course if text is not None))
-        words = dict(zip(known, told_apart(known), strict=True))
+        texts = list(dict.fromkeys(text for _, text in course if text is not None))
+        words = dict(zip(texts, told_apart(texts), strict=True))
         return ["" if text is None else words[text] for _, text in course]
 
-    def is_false(self, real: str | None, held: str) -> bool:
+    def is_false(self, real: str | None, believed: str) -> bool:
         """Return True if the value is false by the rules of `false_beliefs`."""
-        return real != held
+        return real != believed
 
     def act(self, event: PerceivedEvent) -> str:
         """Return acts on the block in words: use, placing, mining, writing."""
@@ -223,9 +223,9 @@ class OwnedCount(_Amounts):
         """The title of the plot."""
         return f"What {self.agent} is believed to have: {_plain(self.item)}"
 
-    def value(self, held: NodeView) -> Contents | None:
+    def value(self, view: NodeView) -> Contents | None:
         """Return the number of the item that the agent has, as contents."""
-        agent = held.agents[self.agent]
+        agent = view.agents[self.agent]
         return _only(self.item, agent.inventory, complete=agent.inventory_complete)
 
     def act(self, event: PerceivedEvent) -> str:
@@ -255,9 +255,9 @@ class AgentPlace:
         """The title of the plot."""
         return f"Where {self.agent} is believed to be"
 
-    def value(self, held: NodeView) -> Point | None:
+    def value(self, view: NodeView) -> Point | None:
         """Return the agent's feet position."""
-        return held.agents[self.agent].position
+        return view.agents[self.agent].position
 
     def words(self, course: ValueCourse[Point]) -> list[str]:
         """Return places by the names of near things. An agent that walks is "on the way"."""
@@ -294,9 +294,9 @@ class AgentPlace:
         x, y, z = (math.floor(value + 1e-6) for value in place)
         return f"at {point_words((x, y, z))}"
 
-    def is_false(self, real: Point | None, held: Point) -> bool:
+    def is_false(self, real: Point | None, believed: Point) -> bool:
         """Return True if the value is false by the rules of `false_beliefs`."""
-        return real is None or bool(are_elsewhere(np.array(real), np.array(held)))
+        return real is None or bool(are_elsewhere(np.array(real), np.array(believed)))
 
     def act(self, event: PerceivedEvent) -> str:
         """Return the arrival at the end of a walk, in words."""
@@ -328,13 +328,13 @@ def _only(item: str | None, items: Items, *, complete: bool) -> Contents:
     return Contents({item: count} if count else {}, complete)
 
 
-def _contents_words(held: Contents | None, item: str | None) -> str:
+def _contents_words(contents: Contents | None, item: str | None) -> str:
     """Return contents in words; an empty text if nothing is known."""
-    if held is None or not (held.items or held.complete):
+    if contents is None or not (contents.items or contents.complete):
         return ""
-    if item is not None and not held.items:
+    if item is not None and not contents.items:
         return f"no {_plain(item)}"
-    return contents_words(held.items, complete=held.complete)
+    return contents_words(contents.items, complete=contents.complete)
 
 
 def _plain(item: str) -> str:

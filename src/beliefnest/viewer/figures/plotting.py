@@ -38,8 +38,8 @@ def matter_of(
     block: Position | None,
 ) -> Matter[Any]:
     """Return the matter that a plot follows; arguments and errors are those of `plot_beliefs`."""
-    given = [each for each in (container, agent, block) if each is not None]
-    if len(given) > 1 or not (given or item) or (block and item):
+    named = [each for each in (container, agent, block) if each is not None]
+    if len(named) > 1 or not (named or item) or (block and item):
         raise InputError(
             "a plot follows one thing: give one of container, item, agent and block, or an item "
             "together with its container or with the agent that has it"
@@ -108,9 +108,9 @@ def _check_held(
     """Raise InputError unless a container was ever at a position, in any of the courses."""
     if any(value is not None for course in courses for _, value in course):
         return
-    known = ", ".join(map(str, sorted(recording.state(()).containers)))
+    there = ", ".join(map(str, sorted(recording.state(()).containers)))
     raise InputError(
-        f"there never was a container at {container}; containers are at {known or 'no position'}"
+        f"there never was a container at {container}; containers are at {there or 'no position'}"
     )
 
 
@@ -128,14 +128,14 @@ def _stores(recording: Recording) -> Mapping[Position, str]:
 def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
     """Return the claims about a matter in the real world: speaker, text, and if false or a lie."""
     names = _names(recording)
-    found = []
+    acts = []
     for made in claims_made(recording, (), end):
         if matter.is_claimed(made.claim):
             where = names.get(made.claim.cell)
             said = str(made.claim) if where is None else made.claim.about(where)
             kind = " (a lie)" if made.lie else " (false)" if made.false else ""
-            found.append(NotedAct(made.tick, f"{made.speaker or 'a sign'}: {said}{kind}"))
-    return found
+            acts.append(NotedAct(made.tick, f"{made.speaker or 'a sign'}: {said}{kind}"))
+    return acts
 
 
 def _heard(
@@ -159,8 +159,8 @@ def _course(recording: Recording, path: BeliefPath, matter: Matter[V]) -> ValueC
     """Return the course of a simulator's values, on its timeline and those it was forked from."""
     course: ValueCourse[V] = []
     for stretch in recording.stretches(recording.moment(path)):
-        for tick, held in _held(recording, path, stretch):
-            value = matter.value(held)
+        for tick, view in _held(recording, path, stretch):
+            value = matter.value(view)
             # Only the value at the end of a tick counts.
             while course and course[-1][0] == tick:
                 course.pop()
@@ -191,8 +191,8 @@ def _bands(
     bands: list[Band] = []
     for start, stop in pairwise([*starts, max(end, starts[-1] + 1)]):
         number = _number(course, start)
-        held, true = course[number][1], real[_number(real, start)][1]
-        false, words = held is not None and matter.is_false(true, held), texts[number]
+        believed, true = course[number][1], real[_number(real, start)][1]
+        false, words = believed is not None and matter.is_false(true, believed), texts[number]
         if bands and (bands[-1].words, bands[-1].false) == (words, false):
             bands[-1] = Band(bands[-1].start, stop, words, false)
         else:
@@ -207,15 +207,15 @@ def _number(course: ValueCourse[V], tick: int) -> int:
 
 def _acts(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
     """Return the acts on a matter in the real world."""
-    found: dict[tuple[int, str | None], str] = {}
+    deeds: dict[tuple[int, str | None], str] = {}
     for event in recording.state(()).perceived:
         deed = matter.act(event)
         if not deed or event.tick > end:
             continue
         # An agent that moves items also opens the container: list only the move.
         key = (event.tick, event.actor)
-        if event.kind is not EventKind.OPEN_CONTAINER or key not in found:
-            found[key] = deed
+        if event.kind is not EventKind.OPEN_CONTAINER or key not in deeds:
+            deeds[key] = deed
     return [
-        NotedAct(tick, f"{actor or 'somebody'} {deed}") for (tick, actor), deed in found.items()
+        NotedAct(tick, f"{actor or 'somebody'} {deed}") for (tick, actor), deed in deeds.items()
     ]

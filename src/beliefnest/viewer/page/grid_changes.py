@@ -51,7 +51,7 @@ class GridChanges:
         changed = [n for n in self._numbers if versions[n] != self._versions[n]]
         self._versions = versions.copy()
         cells = self._held.changed(changed)
-        return {number: found for number, found in cells.items() if len(found)}
+        return {number: cells_found for number, cells_found in cells.items() if len(cells_found)}
 
 
 class _Grids:
@@ -65,9 +65,9 @@ class _Grids:
     def beginnings(self, numbers: Sequence[int]) -> Iterator[tuple[Runs, Cells]]:
         """Yield what `GridChanges.beginnings` does."""
         for number in numbers:
-            held = self._held[number]
-            runs = grid_runs(held, None if number == 0 else self._first)
-            yield runs, np.flatnonzero(_are_false(held, self._first))
+            states = self._held[number]
+            runs = grid_runs(states, None if number == 0 else self._first)
+            yield runs, np.flatnonzero(_are_false(states, self._first))
 
     def first_states(self, cells: Cells) -> States:
         """Return the blocks that node 0 had at some cells at first."""
@@ -75,12 +75,12 @@ class _Grids:
 
     def changed(self, numbers: Iterable[int]) -> Mapping[int, Cells]:
         """Return the cells of some nodes that changed since the last call."""
-        found = {}
+        cells_changed = {}
         for number in numbers:
-            held, now = self._held[number], self._table.flat_blocks(number)
-            found[number] = np.flatnonzero(held != now)
-            held[found[number]] = now[found[number]]
-        return found
+            before, now = self._held[number], self._table.flat_blocks(number)
+            cells_changed[number] = np.flatnonzero(before != now)
+            before[cells_changed[number]] = now[cells_changed[number]]
+        return cells_changed
 
 
 class _Chunks:
@@ -100,7 +100,7 @@ class _Chunks:
 
         A slice of chunks is looked at once if it has the same rows in several nodes or places.
         """
-        known: dict[tuple[bool, bytes], list[tuple[Runs, Cells]]] = {}
+        made: dict[tuple[bool, bytes], list[tuple[Runs, Cells]]] = {}
         slices: dict[tuple[bool, int, int, bytes, bytes], tuple[Runs, Cells]] = {}
         across = self._pool.chunks[0]
         width, height, depth = self._table.context.box.shape
@@ -108,7 +108,7 @@ class _Chunks:
         for number in numbers:
             rows = self._rows[number].reshape(across, -1)
             key = number == 0, rows.tobytes()
-            if key not in known:
+            if key not in made:
                 parts = []
                 for at in range(across):
                     # Chunks begin one cell before the box.
@@ -123,8 +123,8 @@ class _Chunks:
                     skipped = begin * height * depth
                     parts.append((runs._replace(starts=runs.starts + skipped), cells + skipped))
                 all_runs, all_cells = zip(*parts, strict=True)
-                known[key] = [(joined(all_runs), np.concatenate(all_cells))]
-            yield from known[key]
+                made[key] = [(joined(all_runs), np.concatenate(all_cells))]
+            yield from made[key]
 
     def _slice(
         self, layers: slice, rows: npt.NDArray[np.int32], first: npt.NDArray[np.int32] | None
@@ -138,13 +138,13 @@ class _Chunks:
         """
         if first is not None and np.array_equal(rows, first):
             return _NO_RUNS, _NO_CELLS
-        held = self._flat(layers, rows)
-        if not len(held):
+        states = self._flat(layers, rows)
+        if not len(states):
             return _NO_RUNS, _NO_CELLS
         if first is None:
-            return grid_runs(held, None), _NO_CELLS
+            return grid_runs(states, None), _NO_CELLS
         real = self._flat(layers, first)
-        return grid_runs(held, real), np.flatnonzero(_are_false(held, real))
+        return grid_runs(states, real), np.flatnonzero(_are_false(states, real))
 
     def _flat(self, layers: slice, rows: npt.NDArray[np.int32]) -> States:
         """Return the blocks of the cells of a slice of chunks, by their layers along x."""
@@ -162,7 +162,7 @@ class _Chunks:
 
     def changed(self, numbers: Iterable[int]) -> Mapping[int, Cells]:
         """Return the cells of some nodes that changed since the last call."""
-        found: dict[int, Cells] = {}
+        cells_changed: dict[int, Cells] = {}
         blocks = self._pool.blocks[: self._pool.used]
         is_changed = np.ones(len(blocks), dtype=np.bool_)
         # Several blocks are compared at once, to find the few rows that differ.
@@ -173,14 +173,14 @@ class _Chunks:
         for number in numbers:
             before, now = self._rows[number], rows[number].copy()
             chunks = np.flatnonzero((before != now) | is_changed[now])
-            held, holds = before[chunks], now[chunks]
-            apart = (_words(self._blocks[held]) != _words(blocks[holds])).any(axis=1)
-            chunks, held, holds = chunks[apart], held[apart], holds[apart]
-            at = np.flatnonzero(self._blocks[held] != blocks[holds])
-            found[number] = np.sort(self._cells(chunks[at // VOLUME], at % VOLUME))
+            held_rows, holds = before[chunks], now[chunks]
+            apart = (_words(self._blocks[held_rows]) != _words(blocks[holds])).any(axis=1)
+            chunks, held_rows, holds = chunks[apart], held_rows[apart], holds[apart]
+            at = np.flatnonzero(self._blocks[held_rows] != blocks[holds])
+            cells_changed[number] = np.sort(self._cells(chunks[at // VOLUME], at % VOLUME))
             self._rows[number] = now
         self._keep(blocks, is_changed)
-        return found
+        return cells_changed
 
     def _keep(self, blocks: States, is_changed: npt.NDArray[np.bool_]) -> None:
         """Copy the changed rows of the pool."""
@@ -204,9 +204,9 @@ _NO_CELLS: Cells = np.empty(0, dtype=np.int64)
 _NO_RUNS = Runs(_NO_CELLS, _NO_CELLS, np.empty(0, dtype=np.int16))
 
 
-def _are_false(held: States, real: States) -> npt.NDArray[np.bool_]:
+def _are_false(believed: States, real: States) -> npt.NDArray[np.bool_]:
     """Return True where blocks are known and differ from the real ones."""
-    are_false: npt.NDArray[np.bool_] = (held >= 0) & (held != real)
+    are_false: npt.NDArray[np.bool_] = (believed >= 0) & (believed != real)
     return are_false
 
 

@@ -58,18 +58,18 @@ def explanation_of(
         InputError: There is no such thing.
         TickError: The timeline has no such tick.
     """
-    (told,) = _told_reasons(reader, key, path, [(tick, thing)])
-    return told
+    (explanation,) = _told_reasons(reader, key, path, [(tick, thing)])
+    return explanation
 
 
 def _told_reasons(
     reader: Reader, key: TimelineKey, path: BeliefPath, asked: Sequence[tuple[int, str]]
 ) -> list[dict[str, Any]]:
     """Return the answers of `explanation_of` for several ticks and things, found together."""
-    told = reader.explain(key, path, [(tick, _element(reader, thing)) for tick, thing in asked])
+    reasons = reader.explain(key, path, [(tick, _element(reader, thing)) for tick, thing in asked])
     return [
         {"t": tick, "lines": str(each).splitlines()}
-        for (tick, _), each in zip(asked, told, strict=True)
+        for (tick, _), each in zip(asked, reasons, strict=True)
     ]
 
 
@@ -104,12 +104,12 @@ def look_of(
 
 def _named(thing: str) -> tuple[str, int]:
     """Return the kind and the number of a thing; raises InputError if it is malformed."""
-    found = _THING.fullmatch(thing)
-    if found is None:
+    match = _THING.fullmatch(thing)
+    if match is None:
         raise InputError(
             f"{thing[:50]!r} is not a thing; write one such as agent-0, block-7 or container-7"
         )
-    return found[1], int(found[2])
+    return match[1], int(match[2])
 
 
 def sight_of(
@@ -127,14 +127,14 @@ def ahead(reader: Reader, about: About, depth: int) -> dict[str, Any]:
     """
     views = _Views(reader)
     data = RunData(reader, about, depth, views.onlooker)
-    told = data.update()
+    update = data.update()
     reasons = {
         "explanations": _explanations(data, list(data.nodes())),
         "looks": views.looks,
         "sights": views.sights,
         "views": views.texts,
     }
-    return {**told, "ahead": reasons}
+    return {**update, "ahead": reasons}
 
 
 class _Views:
@@ -233,16 +233,16 @@ def _place_of(reading: NodeView, name: str) -> Any:
 
 
 def _add(rows: dict[str, list[Any]], name: str, tick: int, value: Any) -> None:
-    told = rows.setdefault(name, [])
-    if not told or told[-1][1] != value:
-        told.append([tick, value])
+    values = rows.setdefault(name, [])
+    if not values or values[-1][1] != value:
+        values.append([tick, value])
 
 
 def _explanations(
     data: RunData, nodes: Sequence[tuple[TimelineInfo, BeliefPath]]
 ) -> dict[str, list[Any]]:
     reader = data.reader
-    found: dict[str, list[Any]] = {}
+    rows_by_thing: dict[str, list[Any]] = {}
     wanted = sorted(nodes, key=lambda each: (each[1] not in data.about.paths, bool(each[0].base)))
     longest = max((info.entries for info, _ in nodes), default=1)
     left = min(_EXPLANATIONS, _ENTRIES // max(1, longest))
@@ -255,15 +255,15 @@ def _explanations(
                 ticks = deeds.get(info.key, [])[: max(0, left)]
                 left -= len(ticks)
                 if ticks:
-                    found[f"{name_of(info.key, path)} {thing}"] = []
+                    rows_by_thing[f"{name_of(info.key, path)} {thing}"] = []
                     asked.setdefault((info.key, path), []).extend((tick, thing) for tick in ticks)
     for (key, path), questions in asked.items():
         # In order of time, a forest is folded further from tick to tick.
         questions.sort()
-        told = _told_reasons(reader, key, path, questions)
-        for (_, thing), row in zip(questions, told, strict=True):
-            found[f"{name_of(key, path)} {thing}"].insert(0, row)
-    return found
+        reasons = _told_reasons(reader, key, path, questions)
+        for (_, thing), row in zip(questions, reasons, strict=True):
+            rows_by_thing[f"{name_of(key, path)} {thing}"].insert(0, row)
+    return rows_by_thing
 
 
 def _deeds(reader: Reader, info: TimelineInfo) -> list[int]:

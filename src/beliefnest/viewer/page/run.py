@@ -94,9 +94,9 @@ class RunData:
         for info in infos:
             line = self._lines.get(info.key) or self._begin(info)
             line.info = info
-            told = self._line_update(line)
-            if told:
-                lines[str(self.keys().index(info.key))] = told
+            line_update = self._line_update(line)
+            if line_update:
+                lines[str(self.keys().index(info.key))] = line_update
         if lines:
             new["timelines"] = lines
         records: dict[str, list[Any]] = {
@@ -175,22 +175,22 @@ class RunData:
     def _line_update(self, line: _Line) -> dict[str, Any]:
         for recorder in line.recorders:
             recorder.advance(line.info.entries)
-        told: dict[str, Any] = {}
+        update: dict[str, Any] = {}
         facts = self._facts(line.info)
         if facts != line.told:
             line.told = facts
-            told["facts"] = facts
+            update["facts"] = facts
         self._read_events(line)
         events = fresh_rows(line.sent, "events", line.events)
         if events is not None:
-            told["events"] = events
+            update["events"] = events
         poses = {n: rows.update() for n, rows in enumerate(line.stands)}
         if any(rows is not None for rows in poses.values()):
-            told["poses"] = {str(n): rows for n, rows in poses.items() if rows is not None}
+            update["poses"] = {str(n): rows for n, rows in poses.items() if rows is not None}
         tracks = {path_text(path): rows.update() for path, rows in line.tracks.items()}
         if any(tracks.values()):
-            told["tracks"] = {path: rows for path, rows in tracks.items() if rows}
-        return told
+            update["tracks"] = {path: rows for path, rows in tracks.items() if rows}
+        return update
 
     def _facts(self, info: TimelineInfo) -> dict[str, Any]:
         base, keys = info.base, self.keys()
@@ -210,7 +210,7 @@ class RunData:
             for event in entry.events if isinstance(entry, Frame) else ():
                 place = event.detail.get("position")
                 wrote = bool(event.actor) and "text" in event.detail
-                told: dict[str, Any] = {
+                row: dict[str, Any] = {
                     "t": entry.tick,
                     "actor": event.actor,
                     "text": happens(event, labels),
@@ -218,8 +218,8 @@ class RunData:
                     "listed": event.kind.traits.is_deed or wrote,
                 }
                 if place is not None:
-                    told["at"] = list(place)
-                line.events.append(told)
+                    row["at"] = list(place)
+                line.events.append(row)
         line.entries = line.info.entries
         recorder = line.recorders[0]
         for number, claim, kind in recorder.claims[line.claims :]:

@@ -95,8 +95,8 @@ def grid_runs(states: npt.NDArray[np.int16], first: npt.NDArray[np.int16] | None
     apart = states if first is None else np.where(states == first, _SAME, states)
     starts = np.append(0, np.flatnonzero(apart[1:] != apart[:-1]) + 1)
     lengths = np.diff(starts, append=len(states))
-    told = apart[starts] != _SAME
-    starts, lengths = starts[told], lengths[told]
+    is_sent = apart[starts] != _SAME
+    starts, lengths = starts[is_sent], lengths[is_sent]
     return Runs(starts, lengths, states[starts])
 
 
@@ -134,8 +134,8 @@ def _text(
     """Return runs as a text: first cell, length and block of each, and if it has `AS_FIRST`."""
     if not len(starts):
         return ""
-    known, which = np.unique(states, return_inverse=True)
-    marks = np.array([UNKNOWN if s < 0 else FIRST_STATE + number_of(s) for s in known.tolist()])
+    distinct, which = np.unique(states, return_inverse=True)
+    marks = np.array([UNKNOWN if s < 0 else FIRST_STATE + number_of(s) for s in distinct.tolist()])
     gaps = np.diff(starts, prepend=0)
     gaps[1:] -= lengths[:-1]
     numbers = np.stack([gaps, 2 * lengths + ~same, marks[which] - 1], axis=1)

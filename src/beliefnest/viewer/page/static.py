@@ -34,12 +34,12 @@ def still_page(
         InputError: The depth is not from 0 to 4, or the page was not built with the package.
     """
     check_depth(depth)
-    told: list[dict[str, Any]] = []
+    updates: list[dict[str, Any]] = []
     title = ""
     for reader, about in runs:
         title = title or about.title
-        told.append(ahead(reader, about, depth))
-    return page_html(title, {"runs": told, "first": dict(first or {})}, served=False)
+        updates.append(ahead(reader, about, depth))
+    return page_html(title, {"runs": updates, "first": dict(first or {})}, served=False)
 
 
 def write_still_page(

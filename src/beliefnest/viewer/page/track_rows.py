@@ -44,20 +44,20 @@ class TrackRows:
     def update(self) -> dict[str, Any]:
         """Return the new rows by list: `[number of its first row, rows]`; empty if none."""
         track = self._track
-        told: dict[str, Any] = {}
+        update: dict[str, Any] = {}
         if not self._begun:
             self._begun = True
-            told["grid"] = track.grid
+            update["grid"] = track.grid
         names = ("blocks", "items", "wrong", "heard", "claims")
         lists: dict[str, Sequence[Any]] = {name: getattr(track, name) for name in names}
         for part in ("agents", "holds", "owns"):
             lists |= {f"{part} {n}": rows for n, rows in enumerate(getattr(track, part))}
         lists |= {f"contents {cell}": rows for cell, rows in track.contents.items()}
         for name, rows in lists.items():
-            found = self._sent.fresh(name, rows)
-            if found is not None:
-                told[name] = [found[0], [_told(name, row) for row in found[1]]]
-        return told
+            fresh = self._sent.fresh(name, rows)
+            if fresh is not None:
+                update[name] = [fresh[0], [_told(name, row) for row in fresh[1]]]
+        return update
 
 
 def _told(name: str, row: Any) -> Any:

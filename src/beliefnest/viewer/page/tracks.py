@@ -263,29 +263,29 @@ class TrackRecorder:
         name = self._reader.agents[agent]
         believed = NodeView(self._forest, self.tracks[at].path).agents[name]
         source = "" if believed.basis is None else believed.basis.source.value
-        held = (believed.equipment or {}).get("main_hand")
+        in_hand = (believed.equipment or {}).get("main_hand")
         speaker = None if believed.basis is None else believed.basis.speaker
-        return [tick, PLACED, seen, list(pose), source, current, held, speaker]
+        return [tick, PLACED, seen, list(pose), source, current, in_hand, speaker]
 
     def _note_contents(self, at: int, track: Track, number: int, tick: int) -> None:
-        forest, held = self._forest, self._forest.holdings.of(number).containers
+        forest, contents = self._forest, self._forest.holdings.of(number).containers
         last = self._last.contents[at]
-        for cell in last.keys() - held.keys():
+        for cell in last.keys() - contents.keys():
             del last[cell]
             _put(track.contents[cell], [tick, None, False, False, -1, "", "", None])
-        for cell, raw in held.items():
+        for cell, raw in contents.items():
             current = number == 0 or raw.current
-            told = (raw.items, raw.complete, current, None if current else raw.basis)
-            if last.get(cell) == told:
+            now = (raw.items, raw.complete, current, None if current else raw.basis)
+            if last.get(cell) == now:
                 continue
             rows = track.contents.setdefault(cell, [])
             content = forest.holdings.content(number, cell).at(tick)
             _put(rows, _content_row(tick, content, current=current))
             if number and raw.current and not raw.in_sight:
                 # An act shows contents in its own tick alone, whenever the next entry comes.
-                told = (raw.items, raw.complete, False, raw.basis)
+                now = (raw.items, raw.complete, False, raw.basis)
                 _put(rows, _content_row(tick + 1, content, current=False))
-            last[cell] = told
+            last[cell] = now
 
     def _note_items(self, at: int, track: Track, number: int, tick: int) -> None:
         lying = self._forest.holdings.of(number).items
@@ -302,10 +302,10 @@ class TrackRecorder:
 
     def _note_looks(self, track: Track, tick: int) -> None:
         for agent, looks in enumerate(self._last.looks):
-            held = None if looks is None else (looks.equipment or {}).get("main_hand")
+            in_hand = None if looks is None else (looks.equipment or {}).get("main_hand")
             rows = track.holds[agent]
-            if not rows or rows[-1][1] != held:
-                _put(rows, [tick, held])
+            if not rows or rows[-1][1] != in_hand:
+                _put(rows, [tick, in_hand])
 
     def _owners(self) -> set[int]:
         """Return the numbers of nodes in which agents' possessions may have changed."""
@@ -340,8 +340,8 @@ def _empty(agents: int) -> list[list[TrackRow]]:
 def _content_row(tick: int, content: Content, *, current: bool) -> TrackRow:
     basis = content.basis
     event = "" if basis.event is None else basis.event.value
-    told = [basis.observed_at, basis.source.value, event, basis.speaker]
-    return [tick, dict(content.items), content.complete, current, *told]
+    ground = [basis.observed_at, basis.source.value, event, basis.speaker]
+    return [tick, dict(content.items), content.complete, current, *ground]
 
 
 def _put(rows: list[TrackRow], row: TrackRow) -> None:

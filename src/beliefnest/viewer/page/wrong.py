@@ -61,8 +61,8 @@ class WrongThings:
                 cells = np.union1d(cells, changed[node])
             if not len(cells):
                 continue
-            held, real = (self._grids.states(node, cells) for node in (number, 0))
-            is_false = (held >= 0) & (held != real)
+            believed, real = (self._grids.states(node, cells) for node in (number, 0))
+            is_false = (believed >= 0) & (believed != real)
             wrong = self._wrong_cells[at]
             before = len(wrong)
             wrong.difference_update(cells[~is_false].tolist())
@@ -74,36 +74,36 @@ class WrongThings:
         forest = self._forest
         real = forest.holdings.of(0).containers
         for at, number in enumerate(self._numbers):
-            held = forest.holdings.of(number).containers
-            mark = (_told(real), _told(held))
+            contents = forest.holdings.of(number).containers
+            mark = (_told(real), _told(contents))
             if mark == self._held[at]:
                 continue
             self._held[at] = mark
             self._content_things[at] = tuple(
                 f"container-{cell}"
-                for cell in sorted(held)
-                if are_false(_contents(real, cell), _contents(held, cell) or _NONE)
+                for cell in sorted(contents)
+                if are_false(_contents(real, cell), _contents(contents, cell) or _NONE)
             )
 
     def _poses(self) -> list[WrongElements]:
         table, poses = self._forest.table, self._forest.poses
         pose_id, feet = table.nodes().pose, poses.arrays().feet
-        known = pose_id >= 0
+        is_known = pose_id >= 0
         if not len(feet):
             return [() for _ in self._numbers]
         moved = are_elsewhere(feet[pose_id[0]], feet[pose_id])
-        apart = known & (moved | ~known[0])
-        found: list[list[str]] = [[] for _ in self._numbers]
+        apart = is_known & (moved | ~is_known[0])
+        names_by_node: list[list[str]] = [[] for _ in self._numbers]
         for at, agent in np.argwhere(apart[self._numbers]).tolist():
-            found[at].append(f"agent-{agent}")
-        return [tuple(things) for things in found]
+            names_by_node[at].append(f"agent-{agent}")
+        return [tuple(things) for things in names_by_node]
 
     def _inventories(self, number: int) -> WrongElements:
         forest = self._forest
         things = []
         for agent in range(len(forest.context.agents)):
-            real, held = (Contents(*forest.holdings.inventory(node, agent)) for node in (0, number))
-            if are_false(real, held):
+            real, mine = (Contents(*forest.holdings.inventory(node, agent)) for node in (0, number))
+            if are_false(real, mine):
                 things.append(f"inventory-{agent}")
         return tuple(things)
 

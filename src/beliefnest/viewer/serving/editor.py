@@ -103,5 +103,5 @@ def _refused(_: Request, error: Exception) -> Response:
 
 
 def _json(content: object, status: int = 200) -> Response:
-    told = visible_json(json.dumps(content, separators=(",", ":"), ensure_ascii=False))
-    return Response(told, status, media_type="application/json")
+    text = visible_json(json.dumps(content, separators=(",", ":"), ensure_ascii=False))
+    return Response(text, status, media_type="application/json")

@@ -47,13 +47,13 @@ class Guard:
         if problem is not None:
             await PlainTextResponse(problem, 403)(scope, receive, send)
             return
-        given = self._given(scope)
+        token = self._given(scope)
 
         async def sending(message: Message) -> None:
             if message["type"] == "http.response.start":
                 message["headers"] = [*message["headers"], *_HEADERS]
-                if given is not None:
-                    cookie = f"{_COOKIE}={given}; HttpOnly; SameSite=Strict; Path=/"
+                if token is not None:
+                    cookie = f"{_COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/"
                     message["headers"].append((b"set-cookie", cookie.encode("latin-1")))
             await send(message)
 
@@ -66,16 +66,16 @@ class Guard:
             return "requests from other sites are refused; use the address that the server printed"
         if self._token is None:
             return None
-        known = self._given(scope) or self._kept(headers)
-        if known is None or not _same(known, self._token):
+        token = self._given(scope) or self._kept(headers)
+        if token is None or not _same(token, self._token):
             return "the token is missing or wrong; use the address that the server printed"
         return None
 
     def _given(self, scope: Scope) -> str | None:
         if self._token is None:
             return None
-        given = parse_qs(scope["query_string"].decode("latin-1")).get("token")
-        return given[0] if given and _same(given[0], self._token) else None
+        tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token")
+        return tokens[0] if tokens and _same(tokens[0], self._token) else None
 
     def _kept(self, headers: dict[str, str]) -> str | None:
         try:

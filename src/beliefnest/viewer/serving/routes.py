@@ -145,9 +145,9 @@ def _json(content: object) -> str:
 
 
 def _page(host: Host) -> Response:
-    told = list(host.told)
-    title = next((u["head"]["title"] for _, u in told if "head" in u), "BeliefNest")
-    content = {"updates": told, "count": len(told), "first": {}}
+    updates = list(host.told)
+    title = next((u["head"]["title"] for _, u in updates if "head" in u), "BeliefNest")
+    content = {"updates": updates, "count": len(updates), "first": {}}
     return HTMLResponse(page_html(title, content, served=True))
 
 
@@ -157,8 +157,8 @@ async def _updates(host: Host, news: _News, first: int) -> AsyncIterator[str]:
     while not news.is_ending():
         for run, update in host.told[number:]:
             number += 1
-            told = _json({"run": run, "update": update})
-            yield f"id: {number}\ndata: {told}\n\n"
+            message = _json({"run": run, "update": update})
+            yield f"id: {number}\ndata: {message}\n\n"
         if not await news.after(number):
             yield ": still here\n\n"
 

@@ -201,13 +201,13 @@ class Channel(Owned):
             elif "perceive" in message:
                 if percepts is None:
                     raise _BrokenError("asked for percepts in a request without any")
-                told = None
+                answer = None
                 if refused is None:
                     try:
-                        told = percepts()
+                        answer = percepts()
                     except Exception as error:  # noqa: BLE001 - raised again after the answer
                         refused = error
-                self._send(_packed({"percepts": told}))
+                self._send(_packed({"percepts": answer}))
             elif message.get("id") == self._number:
                 return message, refused
             else:
@@ -270,8 +270,8 @@ class Channel(Owned):
         how, words = self._child.obituary()
         ended = f"ended {how}" if fault is None else f"{fault} and was killed"
         when = f"during {op!r}" if self._tick is None else f"during {op!r}, after tick {self._tick}"
-        told = f"; its last words:\n{words}" if words else "; it said nothing"
-        return BodyLostError(f"Node {ended} {when}{told}")
+        last_words = f"; its last words:\n{words}" if words else "; it said nothing"
+        return BodyLostError(f"Node {ended} {when}{last_words}")
 
 
 def _packed(message: dict[str, Any]) -> bytes:

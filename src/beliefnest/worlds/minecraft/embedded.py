@@ -77,7 +77,7 @@ class EmbeddedBody:
         seed: str,
         snapshot: Snapshot,
         sink: Sink,
-        known: Sequence[str],
+        agents: Sequence[str],
         on_close: Callable[[], None] = lambda: None,
     ) -> Self:
         """Let Node create and fill a region; `known` are all agents that programs may mention."""
@@ -85,7 +85,7 @@ class EmbeddedBody:
             "create_region",
             region=region,
             seed=seed,
-            known=known,
+            known=agents,
             **node_messages.snapshot_message(snapshot),
         )
         body = cls(channel, region, snapshot, sink, on_close)
@@ -279,9 +279,9 @@ class EmbeddedWorld(NodeWorld):
             raise WorldError(f"there is a body {name!r} already")
         # Programs may mention agents that are absent from this belief.
         self.knows(snapshot.agents)
-        names, known = self._names, sorted(self._agents)
+        names, agents = self._names, sorted(self._agents)
         body = EmbeddedBody.opened(
-            channel, name, seed, snapshot, sink, known, lambda: names.discard(name)
+            channel, name, seed, snapshot, sink, agents, lambda: names.discard(name)
         )
         names.add(name)
         return body

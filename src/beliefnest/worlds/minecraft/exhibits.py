@@ -57,9 +57,9 @@ class Shown:
         blocks = terrain_changes(before.blocks, self.blocks, low)
         gone = before.containers.keys() - self.containers.keys()
         contents = [
-            (place, held)
-            for place, held in self.containers.items()
-            if before.containers.get(place) != held
+            (place, content)
+            for place, content in self.containers.items()
+            if before.containers.get(place) != content
         ]
         agents = agents_changes(before.agents, self.agents, pose_message)
         if not (blocks or gone or contents or agents or before.signs != self.signs):

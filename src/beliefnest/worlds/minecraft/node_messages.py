@@ -169,17 +169,17 @@ def _terrain_of(got: _Snapshot, box: Box, before: Terrain | None) -> Terrain:
     return blocks.terrain()
 
 
-def terrain_of_cubes(told: Cubes, box: Box) -> Terrain:
+def terrain_of_cubes(cubes: Cubes, box: Box) -> Terrain:
     """Return the terrain of a box in cubes.
 
     Raises:
         BodyError: The cubes do not fill the box.
     """
     lattice = Lattice(box.shape, is_one=False)
-    if told.side != SIDE or told.counts != lattice.counts:
-        raise BodyError(f"Node sent {told.counts} cubes of side {told.side} for {box}")
-    rows = _expanded(told.rows, math.prod(told.counts), box)
-    states = _expanded(told.states, (int(rows.max()) + 1) * VOLUME, box)
+    if cubes.side != SIDE or cubes.counts != lattice.counts:
+        raise BodyError(f"Node sent {cubes.counts} cubes of side {cubes.side} for {box}")
+    rows = _expanded(cubes.rows, math.prod(cubes.counts), box)
+    states = _expanded(cubes.states, (int(rows.max()) + 1) * VOLUME, box)
     try:
         return Terrain.of_cubes(box.shape, rows, states)
     except ValueError as fault:
@@ -344,9 +344,9 @@ def _frozen(event: Event) -> Event:
     return replace(event, detail=detail)
 
 
-def _claims(told: Any) -> tuple[Claim, ...]:
+def _claims(plain: Any) -> tuple[Claim, ...]:
     try:
-        return claims_from_plain(told)
+        return claims_from_plain(plain)
     except BeliefNestError as fault:
         raise BodyError(f"Node sent malformed claims: {fault}") from fault
 

@@ -66,17 +66,17 @@ class Circuit:
             changed: Position of the change, which the world or `note` tells already.
         """
         levels = self._levels(self._network(changed))
-        found = {
+        states = {
             place: self._wire(place, level)
             for place, level in levels.items()
             if level != self._power(place)
         }
-        self._states.update(found)
-        for place in _around([changed, *found]):
+        self._states.update(states)
+        for place in _around([changed, *states]):
             moved = self.answer(place)
             self._states.update(moved)
-            found.update(moved)
-        return found
+            states.update(moved)
+        return states
 
     def answer(self, place: Position) -> dict[Position, int]:
         """Return the new states of a block, and of a door's other half, that power changes."""
@@ -169,13 +169,13 @@ class Circuit:
 
         The end of a line points on. A wire without neighbours keeps its form.
         """
-        found = {side: self._connection(place, side) for side in _SIDES}
-        to = [side for side in _SIDES if found[side] != "none"]
+        connections = {side: self._connection(place, side) for side in _SIDES}
+        to = [side for side in _SIDES if connections[side] != "none"]
         if len(to) == 1:
-            return {**found, _OPPOSITE[to[0]]: "side"}
+            return {**connections, _OPPOSITE[to[0]]: "side"}
         properties = self._registry.properties(self._at(place))
         if to or all(properties[side] == "none" for side in _SIDES):
-            return found
+            return connections
         return dict.fromkeys(_SIDES, "side")
 
     def _wire(self, place: Position, power: int) -> int:
@@ -194,16 +194,16 @@ class Circuit:
 
     def _network(self, changed: Position) -> list[Position]:
         """Return the wires near a position and all that hang together with them, in order."""
-        found: set[Position] = set()
+        places: set[Position] = set()
         left = [place for place in _around([changed]) if self._is_wire(place)]
         while left:
             place = left.pop()
-            if place in found:
+            if place in places:
                 continue
-            found.add(place)
+            places.add(place)
             beside = [(x, y + up, z) for x, y, z in _level(place) for up in (-1, 0, 1)]
             left += [other for other in beside if self._is_wire(other)]
-        return sorted(found)
+        return sorted(places)
 
     def _levels(self, wires: Sequence[Position]) -> dict[Position, int]:
         """Return the power of each wire of a network."""

@@ -66,10 +66,10 @@ def compiled(file: Path) -> Compiled:
 def _kept(file: Path) -> bytes | None:
     """Return machine code that was kept in a file; None if it is not there, or is damaged."""
     try:
-        held = read_regular(file)
+        content = read_regular(file)
     except OSError:
         return None
-    digest, code = held[:_DIGEST], held[_DIGEST:]
+    digest, code = content[:_DIGEST], content[_DIGEST:]
     return code if hashlib.sha256(code).digest() == digest else None
 
 

@@ -70,41 +70,41 @@ class Desk:
 
     def prepare(self, code: str) -> Prepared | Mapping[str, Any]:
         """Return a program that is ready to run, or its error."""
-        known = self._prepared.get(code)
-        if known is None:
-            told = self._ask("prepare", code, parts().scope)
-            known = told["error"] if "error" in told else Prepared(code, **told)
-            self._prepared[code] = known
+        prepared = self._prepared.get(code)
+        if prepared is None:
+            answer = self._ask("prepare", code, parts().scope)
+            prepared = answer["error"] if "error" in answer else Prepared(code, **answer)
+            self._prepared[code] = prepared
             while len(self._prepared) > _MOST_KEPT:
                 del self._prepared[next(iter(self._prepared))]
-        return known
+        return prepared
 
     def outcome(
         self, program: Prepared, outcome: Mapping[str, Any], last: int, under: Sequence[str]
     ) -> Mapping[str, Any] | None:
         """Describe how a program ended, as the sandbox does; None if it ended well."""
         limits = {"fuel": parts().limits.fuel, "memory": parts().limits.memory}
-        told: Mapping[str, Any] | None = self._ask(
+        end: Mapping[str, Any] | None = self._ask(
             "outcome", program.code, parts().scope, outcome, limits, last, under
         )
-        return told
+        return end
 
     def line(self, program: Prepared, statement: int) -> int | None:
         """Return the line of a statement of a program."""
-        told: int | None = self._ask("lineOf", program.code, parts().scope, statement)
-        return told
+        line: int | None = self._ask("lineOf", program.code, parts().scope, statement)
+        return line
 
     def admit_skill(self, name: str, wires: Sequence[Any], facts: DeskFacts) -> dict[str, Any]:
         """Check a call of a skill; see `admitSkill` in desk.js."""
-        told: dict[str, Any] = self._remembered("admitSkill", name, wires, facts.plain)
-        return told
+        admission: dict[str, Any] = self._remembered("admitSkill", name, wires, facts.plain)
+        return admission
 
     def admit_call(
         self, kind: str, name: str, wires: Sequence[Any], facts: DeskFacts
     ) -> dict[str, Any]:
         """Check a call of a method of a game object; see `admitCall` in desk.js."""
-        told: dict[str, Any] = self._ask("admitCall", kind, name, wires, facts.plain)
-        return told
+        admission: dict[str, Any] = self._ask("admitCall", kind, name, wires, facts.plain)
+        return admission
 
     def _remembered(self, *request: object) -> Any:
         """Return the answer to a request, if possible without asking: equal ones are frequent."""

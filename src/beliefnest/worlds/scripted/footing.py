@@ -257,8 +257,8 @@ def _states_of(blocks: Terrain) -> npt.NDArray[np.intp]:
     # Counting is faster than sorting, as `np.unique` does.
     counts = np.zeros(1, dtype=np.bool_)
     for part in _parts_of(blocks):
-        found = np.bincount(part.reshape(-1) + 1) > 0
-        short, long = sorted((counts, found), key=len)
+        occurs = np.bincount(part.reshape(-1) + 1) > 0
+        short, long = sorted((counts, occurs), key=len)
         counts = long.copy()
         counts[: len(short)] |= short
     return np.flatnonzero(counts) - 1

@@ -105,7 +105,7 @@ class Queue(NamedTuple):
 
 
 @merged
-def _write_steps(cells: PathCells, cell: int, found: Ints) -> int:
+def _write_steps(cells: PathCells, cell: int, steps: Ints) -> int:
     """Write the cells that one step or jump leads to; return their number.
 
     `geometry.steps` has the rules. The last part of `found` is scratch memory.
@@ -122,22 +122,22 @@ def _write_steps(cells: PathCells, cell: int, found: Ints) -> int:
             dz = 1 if number < 6 else -1
         level = landing(codes, sizes, x, y, z, dx, dz)
         if level >= 0:
-            found[count] = ((x + dx) * sizes[1] + level) * sizes[2] + z + dz
+            steps[count] = ((x + dx) * sizes[1] + level) * sizes[2] + z + dz
             count += 1
-    scratch = found[MOST_STEPS:]
+    scratch = steps[MOST_STEPS:]
     for number in range(4):
         dx = 1 if number == 0 else (-1 if number == 2 else 0)
         dz = 1 if number == 1 else (-1 if number == 3 else 0)
         for jump in range(jumps(codes, sizes, x, y, z, dx, dz, scratch)):
             far, up = int(scratch[2 * jump]), int(scratch[2 * jump + 1])
-            found[count] = ((x + far * dx) * sizes[1] + y + up) * sizes[2] + z + far * dz
+            steps[count] = ((x + far * dx) * sizes[1] + y + up) * sizes[2] + z + far * dz
             count += 1
     if climb(codes, sizes, x, y, z):
-        found[count] = cell + sizes[2]
+        steps[count] = cell + sizes[2]
         count += 1
     level = descent(codes, sizes, x, y, z)
     if level >= 0:
-        found[count] = (x * sizes[1] + level) * sizes[2] + z
+        steps[count] = (x * sizes[1] + level) * sizes[2] + z
         count += 1
     return count
 
@@ -164,7 +164,7 @@ def _is_met(cells: PathCells, aim: PathAim, x: int, y: int, z: int) -> bool:
 
 
 @compiled
-def find(cells: PathCells, aim: PathAim, trail: Trail, queue: Queue, found: Ints, most: int) -> int:
+def find(cells: PathCells, aim: PathAim, trail: Trail, queue: Queue, steps: Ints, most: int) -> int:
     """Continue A* to the next cell that meets an aim.
 
     Args:
@@ -172,7 +172,7 @@ def find(cells: PathCells, aim: PathAim, trail: Trail, queue: Queue, found: Ints
         aim: The aim.
         trail: Cells found so far, at first the start alone.
         queue: Cells to continue from, at first the start alone.
-        found: Scratch memory, `SCRATCH` numbers.
+        steps: Scratch memory, `SCRATCH` numbers.
         most: Number of cells after which the search ends.
 
     Returns:
@@ -201,8 +201,8 @@ def find(cells: PathCells, aim: PathAim, trail: Trail, queue: Queue, found: Ints
             return WIDER
         marks[cell] |= _DONE
         counts[2] += 1
-        for number in range(_write_steps(cells, cell, found)):
-            step = int(found[number])
+        for number in range(_write_steps(cells, cell, steps)):
+            step = int(steps[number])
             i, j, k = step // (sizes[1] * sizes[2]), step // sizes[2] % sizes[1], step % sizes[2]
             cost = costs[cell] + step_cost(cells.codes, sizes, x, y, z, i, j, k)
             if marks[step] & AVOIDED or (came[step] and cost >= costs[step]):

@@ -178,8 +178,8 @@ class Ground:
             if number is not None and not self.may_lead(start, goal):
                 self._ways[wanted] = None
             else:
-                self._ways[wanted] = found = self._found_way(start, goal)
-                if found is None and number is None and self._footing.window(start) is not None:
+                self._ways[wanted] = way = self._found_way(start, goal)
+                if way is None and number is None and self._footing.window(start) is not None:
                     # Remember the area, so that the next search there need not explore all of it.
                     self._add_area(start)
         return self._ways[wanted]
@@ -191,12 +191,12 @@ class Ground:
         some cell in an area with `start` meets the goal.
         """
         asked = (start, goal)
-        known = self._leads.get(asked)
-        if known is None:
+        leads = self._leads.get(asked)
+        if leads is None:
             if len(self._leads) >= _MOST_WAYS:
                 self._leads.clear()
-            known = self._leads[asked] = self._leads_there(start, goal)
-        return known
+            leads = self._leads[asked] = self._leads_there(start, goal)
+        return leads
 
     def _leads_there(self, start: Position, goal: WalkGoal) -> bool:
         if self._footing.window(start) is None:
@@ -246,12 +246,12 @@ class Ground:
 
     def _has_line(self, cell: Position, block: Position) -> bool:
         asked = (cell, block)
-        known = self._lines.get(asked)
-        if known is None:
+        has_line = self._lines.get(asked)
+        if has_line is None:
             if len(self._lines) >= _MOST_WAYS:
                 self._lines.clear()
-            known = self._lines[asked] = can_use(self._box, self._blocks, eye_in(cell), block)
-        return known
+            has_line = self._lines[asked] = can_use(self._box, self._blocks, eye_in(cell), block)
+        return has_line
 
     def _first_area(self, start: Position) -> int | None:
         """Return the number of the first known area that contains a cell; None: there is none."""
@@ -326,8 +326,8 @@ class _Search:
     @property
     def found(self) -> npt.NDArray[np.bool_]:
         """By index, True for the cells found so far."""
-        found: npt.NDArray[np.bool_] = self._trail.came != 0
-        return found
+        is_reached: npt.NDArray[np.bool_] = self._trail.came != 0
+        return is_reached
 
     @property
     def is_complete(self) -> bool:
@@ -383,12 +383,12 @@ class _Search:
             )
 
         old, new = self._trail, self._emptied(after)
-        found = np.flatnonzero(old.came)
-        here, came = moved(found), old.came[found]
+        reached = np.flatnonzero(old.came)
+        here, came = moved(reached), old.came[reached]
         is_start = came < 0
         new.came[here] = np.where(is_start, -1, moved(np.where(is_start, 0, came - 1)) + 1)
-        new.costs[here] = old.costs[found]
-        new.marks[here] = old.marks[found]
+        new.costs[here] = old.costs[reached]
+        new.marks[here] = old.marks[reached]
         waiting = self._queue.cells[: counts[0]]
         waiting[:] = moved(waiting)
         counts[3] = moved(counts[3:4])[0]

@@ -26,24 +26,24 @@ class Grounds:
 
     def of(self, box: Box, blocks: Terrain) -> Ground:
         """Return the ground of a box."""
-        held = blocks.dense() if blocks.is_dense else blocks
-        same = self._same.get(id(held))
-        if same is not None and same[0] is held:
+        grid = blocks.dense() if blocks.is_dense else blocks
+        same = self._same.get(id(grid))
+        if same is not None and same[0] is grid:
             return same[1]
-        if isinstance(held, Terrain):
-            known = Ground(self._registry, box, held)
+        if isinstance(grid, Terrain):
+            ground = Ground(self._registry, box, grid)
         else:
-            content = (box, held.tobytes())
+            content = (box, grid.tobytes())
             if content not in self._equal:
                 self._equal[content] = Ground(self._registry, box, blocks)
-            known = self._equal[content]
+            ground = self._equal[content]
         # Keep the blocks alive, so that no other ones get their id.
-        self._same[id(held)] = (held, known)
+        self._same[id(grid)] = (grid, ground)
         _keep_latest(self._same)
         _keep_latest(self._equal)
-        return known
+        return ground
 
 
-def _keep_latest(known: dict[_Key, _Value]) -> None:
-    while len(known) > _MOST:
-        del known[next(iter(known))]
+def _keep_latest(kept: dict[_Key, _Value]) -> None:
+    while len(kept) > _MOST:
+        del kept[next(iter(kept))]

@@ -103,12 +103,12 @@ class Guest:
             text = engine.string(json.dumps(message))
             answer = engine.call(self._functions["dispatch"], [text])
             engine.free(text)
-            told = engine.text(answer)
+            reply = engine.text(answer)
             engine.free(answer)
         most = parts().limits.message
-        if len(told) > most:
+        if len(reply) > most:
             return {"ok": False, "value": {"message": too_much(most), "kind": "refused"}}
-        answered: dict[str, Any] = parsed(told)
+        answered: dict[str, Any] = parsed(reply)
         return answered
 
     def charge(self, units: int) -> None:
@@ -138,12 +138,12 @@ class Guest:
         engine = self._engine
         with self._entered():
             try:
-                told = engine.call(self._functions["describe"], [engine.result(promise)])
+                description = engine.call(self._functions["describe"], [engine.result(promise)])
             except GuestError as error:
                 if error.message == "interrupted":
                     raise
                 return {}
-            return parsed(engine.text(told))
+            return parsed(engine.text(description))
 
     def _number(self, value: float) -> int:
         self.charge(_NUMBER_COST)

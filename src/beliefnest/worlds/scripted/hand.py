@@ -96,8 +96,8 @@ class Hand:
     @property
     def contents(self) -> str:
         """Items that it carries, for messages."""
-        held = self.world.agents[self.name].inventory
-        return ", ".join(f"{count} {name}" for name, count in held.items()) or "nothing"
+        inventory = self.world.agents[self.name].inventory
+        return ", ".join(f"{count} {name}" for name, count in inventory.items()) or "nothing"
 
     def lacking(self, called: str, place: Position, advice: str) -> SkillError:
         """Return the error that there is no such block at a place.
@@ -171,25 +171,25 @@ _ANY_DOOR = Doors()
 
 def doors_in(value: Any) -> Doors:
     """Return a program's argument about doors; raises SkillError if it is malformed."""
-    given = {} if value is None else value
+    flags = {} if value is None else value
     names = ("openDoors", "closeDoors")
-    if not isinstance(given, dict) or not all(
-        name in names and isinstance(flag, bool) for name, flag in given.items()
+    if not isinstance(flags, dict) or not all(
+        name in names and isinstance(flag, bool) for name, flag in flags.items()
     ):
         raise SkillError(
             f"doors may have openDoors and closeDoors, each true or false; it is {quoted(value)}"
         )
-    return Doors(given.get("openDoors", True), given.get("closeDoors", False))
+    return Doors(flags.get("openDoors", True), flags.get("closeDoors", False))
 
 
 def _way(
     hand: Hand, goal: WalkGoal, doors: Doors, bumped: AbstractSet[Position]
 ) -> tuple[Position, ...] | None:
     """Return a path through no door, or else one through doors; avoid cells bumped into."""
-    known = hand.known()
-    through = known.with_doors_opened if doors.opens else known
-    way = known.without_doors.way(hand.cell, goal, bumped)
-    if way is None and through is not known.without_doors:
+    grounds = hand.known()
+    through = grounds.with_doors_opened if doors.opens else grounds
+    way = grounds.without_doors.way(hand.cell, goal, bumped)
+    if way is None and through is not grounds.without_doors:
         way = through.way(hand.cell, goal, bumped)
     return way
 

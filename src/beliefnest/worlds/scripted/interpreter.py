@@ -96,12 +96,12 @@ class Interpreter:
 
     def restore(self, state: MachineState) -> None:
         """Set a state; this interpreter must be new."""
-        end = max(place + len(held) for place, held in state.pieces)
+        end = max(place + len(piece) for place, piece in state.pieces)
         more = -(-end // _PAGE) - self._machine.size // _PAGE
         if more > 0:
             self._machine.grow(more)
-        for place, held in state.pieces:
-            self._machine.write(place, held)
+        for place, piece in state.pieces:
+            self._machine.write(place, piece)
         self._runtime, self._context = state.runtime, state.context
 
     def close(self) -> None:
@@ -138,11 +138,11 @@ class Interpreter:
         """Return a value as a text, up to a limit."""
         place = self._do("QTS_GetString", self._context, value)
         most = min(_LONGEST_TEXT, self._machine.size - place)
-        held = self._machine.read(place, min(most, _USUAL_TEXT))
-        if b"\0" not in held:
-            held = self._machine.read(place, most)
+        memory = self._machine.read(place, min(most, _USUAL_TEXT))
+        if b"\0" not in memory:
+            memory = self._machine.read(place, most)
         self._do("QTS_FreeCString", self._context, place)
-        return held.partition(b"\0")[0].decode("utf-8", "replace")
+        return memory.partition(b"\0")[0].decode("utf-8", "replace")
 
     def argument(self, values: int, index: int) -> str:
         """Return an argument of a host function as a text."""
@@ -163,9 +163,9 @@ class Interpreter:
     def member(self, value: int, name: str) -> int:
         """Return a property of an object."""
         key = self.string(name)
-        found = self._do("QTS_GetProp", self._context, value, key)
+        member = self._do("QTS_GetProp", self._context, value, key)
         self.free(key)
-        return found
+        return member
 
     def evaluate(self, code: str, file: str) -> int:
         """Run a text and return its value; raises GuestError."""
@@ -219,9 +219,9 @@ class Interpreter:
         raise GuestError(name, message, stack)
 
     def _characters(self, text: str) -> int:
-        held = _bytes(text) + b"\0"
-        place = self._allocate(len(held))
-        self._machine.write(place, held)
+        characters = _bytes(text) + b"\0"
+        place = self._allocate(len(characters))
+        self._machine.write(place, characters)
         return place
 
     def _allocate(self, length: int) -> int:

@@ -217,8 +217,8 @@ class JavaScriptProgram:
             return
         ended = outcome.get("ended")
         if isinstance(ended, GuestEndedError):
-            told = {"kind": ended.kind, "message": ended.message, "guestStack": ended.stack}
-            outcome = {**outcome, "ended": told}
+            fault = {"kind": ended.kind, "message": ended.message, "guestStack": ended.stack}
+            outcome = {**outcome, "ended": fault}
         try:
             error = self._desk.outcome(self._prepared, outcome, last, under)
         except TooIntricateError:
@@ -231,9 +231,9 @@ class JavaScriptProgram:
             return
         assert self._guest is not None
         try:
-            told = self._guest.send(message)
-            if not told["ok"]:
-                self._finish({"ok": False, "error": told["value"]})
+            answer = self._guest.send(message)
+            if not answer["ok"]:
+                self._finish({"ok": False, "error": answer["value"]})
             elif self._guest.idle:
                 self._look()
         except GuestEndedError as ended:
@@ -257,13 +257,13 @@ class JavaScriptProgram:
         try:
             answer = json.dumps({"ok": True, "value": self._asked(text)})
         except RefusedError as error:
-            told = {"$": "e", "message": str(error), "name": "Error", "skill": None}
-            return json.dumps({"ok": False, "value": {**told, "kind": "refused"}})
+            fault = {"$": "e", "message": str(error), "name": "Error", "skill": None}
+            return json.dumps({"ok": False, "value": {**fault, "kind": "refused"}})
         except _RequestError as error:
             return json.dumps({"ok": False, "value": error.wire})
         except TooIntricateError:
-            told = {"$": "e", "message": "the arguments are too large", "name": "Error"}
-            return json.dumps({"ok": False, "value": {**told, "skill": None, "kind": "refused"}})
+            fault = {"$": "e", "message": "the arguments are too large", "name": "Error"}
+            return json.dumps({"ok": False, "value": {**fault, "skill": None, "kind": "refused"}})
         self._guest.charge(cost.answered * len(answer))
         return answer
 
@@ -289,88 +289,88 @@ class JavaScriptProgram:
         return DeskFacts(self._reads.name, self._reads.agents, self._kinds)
 
     def _get(self, wire: Any, name: str) -> Any:
-        kind, held = self._object(wire)
-        if isinstance(held, BotBody):
-            value = self._reads.member(held, name)
+        kind, body = self._object(wire)
+        if isinstance(body, BotBody):
+            value = self._reads.member(body, name)
             if value is not None:
                 return value
         if kind == "bot" and name in _GETS:
             return _GETS[name](self)
-        raise self._lacks(kind, held, name)
+        raise self._lacks(kind, body, name)
 
     def _set(self, wire: Any, name: str, _: Any) -> Any:
         raise self._lacks(*self._object(wire), name)
 
     def _call(self, wire: Any, name: str, wires: list[Any]) -> Any:
-        kind, held = self._object(wire)
-        if isinstance(held, OpenWindow):
-            if name == held.gives:
-                return [_item(*each) for each in held.items().items()]
+        kind, window = self._object(wire)
+        if isinstance(window, OpenWindow):
+            if name == window.gives:
+                return [_item(*each) for each in window.items().items()]
             if name == "close":
                 return _UNDEFINED
         if kind != "bot" or name not in _CALLS:
-            raise self._lacks(kind, held, name)
+            raise self._lacks(kind, window, name)
         if name == "blockAt" and _is_plain_place(wires):
             return self._reads.block(tuple(wires[0]["c"]))
-        told = self._desk.admit_call("bot", name, wires, self._facts)
-        self._charge(told)
-        if "error" in told:
-            raise _RequestError(told["error"])
-        return _CALLS[name](self, told)
+        admission = self._desk.admit_call("bot", name, wires, self._facts)
+        self._charge(admission)
+        if "error" in admission:
+            raise _RequestError(admission["error"])
+        return _CALLS[name](self, admission)
 
     def _skill(self, name: str, wires: list[Any]) -> Any:
         if name not in self._skills:
             raise RefusedError(f"the scripted world has no {name}; {_ELSEWHERE}")
-        told = self._desk.admit_skill(name, wires, self._facts)
-        self._charge(told)
-        if "error" in told and not told.get("later"):
-            raise _RequestError(told["error"])
-        return self._promise(name, told)
+        admission = self._desk.admit_skill(name, wires, self._facts)
+        self._charge(admission)
+        if "error" in admission and not admission.get("later"):
+            raise _RequestError(admission["error"])
+        return self._promise(name, admission)
 
-    def _charge(self, told: Mapping[str, Any]) -> None:
+    def _charge(self, admission: Mapping[str, Any]) -> None:
         assert self._guest is not None
-        self._guest.charge(told["cost"] + (_ERROR_COST if "error" in told else 0))
+        self._guest.charge(admission["cost"] + (_ERROR_COST if "error" in admission else 0))
 
-    def _promise(self, name: str, told: Mapping[str, Any], label: str | None = None) -> Any:
+    def _promise(self, name: str, admission: Mapping[str, Any], label: str | None = None) -> Any:
         """Note a call, and return the promise of its result.
 
         Args:
             name: The call, for the world.
-            told: What the desk says of it.
+            admission: What the desk says of it.
             label: The call, for the program's author; by default its name.
         """
         most = parts().limits.calls
         if len(self._under_way) >= most:
             raise RefusedError(f"{most} calls are under way, which is the limit")
-        number = self._ask(name, told)
+        number = self._ask(name, admission)
         self._under_way[number] = (label or name, self._began[number])
         return {"$": "p", "id": number}
 
-    def _ask(self, name: str, told: Mapping[str, Any]) -> int:
+    def _ask(self, name: str, admission: Mapping[str, Any]) -> int:
         assert self._guest is not None
         number, self._next = self._next, self._next + 1
         self._began[number] = self._guest.last_statement
-        self._requests.append(Request.admitted(number, name, told))
+        self._requests.append(Request.admitted(number, name, admission))
         return number
 
-    def _speak(self, name: str, told: Mapping[str, Any]) -> Any:
+    def _speak(self, name: str, admission: Mapping[str, Any]) -> Any:
         if self._speech_lasts:
-            return self._promise(f"bot.{name}", told)
-        self._ask(f"bot.{name}", told)
+            return self._promise(f"bot.{name}", admission)
+        self._ask(f"bot.{name}", admission)
         return _UNDEFINED
 
-    def _open(self, told: Mapping[str, Any]) -> Any:
-        [target] = told["checked"]
+    def _open(self, admission: Mapping[str, Any]) -> Any:
+        [target] = admission["checked"]
         if not isinstance(target, dict) or "position" not in target:
             raise RefusedError(f"the scripted world opens blocks alone; {_ELSEWHERE}")
         place = [target["position"]]
-        told = {**told, "own": place, "checked": place}
-        return self._promise("openContainer", told, "bot.openContainer")
+        admission = {**admission, "own": place, "checked": place}
+        return self._promise("openContainer", admission, "bot.openContainer")
 
     def _listen(self, event: str, wire: Any, once: bool) -> Any:
         if event not in _HEARD:
-            known = event in parts().events
-            if known:
+            is_event = event in parts().events
+            if is_event:
                 raise RefusedError(f"the scripted world has no event {event}; {_ELSEWHERE}")
             raise RefusedError(
                 f"a program cannot listen to the event {_shown(event)}; "
@@ -412,9 +412,9 @@ class JavaScriptProgram:
     def _data(self, table: str, *_: Any) -> Any:
         raise RefusedError(f"the scripted world has no mcData.{table}; {_ELSEWHERE}")
 
-    def _lacks(self, kind: str, held: object, name: str) -> RefusedError:
-        what = held.what if isinstance(held, OpenWindow) else kind
-        has = (held.gives, "close") if isinstance(held, OpenWindow) else _HAS.get(kind, ())
+    def _lacks(self, kind: str, window: object, name: str) -> RefusedError:
+        what = window.what if isinstance(window, OpenWindow) else kind
+        has = (window.gives, "close") if isinstance(window, OpenWindow) else _HAS.get(kind, ())
         there = f", only {', '.join(has)}" if has else ""
         return RefusedError(f"the scripted world has no {what}.{name}{there}; {_ELSEWHERE}")
 
@@ -457,13 +457,15 @@ _GETS: Mapping[str, Callable[[JavaScriptProgram], Any]] = {
 }
 
 _CALLS: Mapping[str, Callable[[JavaScriptProgram, Mapping[str, Any]], Any]] = {
-    "blockAt": lambda program, told: program._reads.block(tuple(told["checked"][0])),
-    "chat": lambda program, told: program._speak("chat", told),
-    "whisper": lambda program, told: program._speak("whisper", told),
-    "openContainer": lambda program, told: program._open(told),
-    "openChest": lambda program, told: program._open(told),
-    "closeWindow": lambda program, told: _UNDEFINED,
-    "waitForTicks": lambda program, told: program._promise("waitTicks", told, "bot.waitForTicks"),
+    "blockAt": lambda program, admitted: program._reads.block(tuple(admitted["checked"][0])),
+    "chat": lambda program, admitted: program._speak("chat", admitted),
+    "whisper": lambda program, admitted: program._speak("whisper", admitted),
+    "openContainer": lambda program, admitted: program._open(admitted),
+    "openChest": lambda program, admitted: program._open(admitted),
+    "closeWindow": lambda program, admitted: _UNDEFINED,
+    "waitForTicks": lambda program, admitted: program._promise(
+        "waitTicks", admitted, "bot.waitForTicks"
+    ),
 }
 
 _ACTIONS: Mapping[str, Callable[..., Any]] = {

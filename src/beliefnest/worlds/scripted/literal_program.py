@@ -160,12 +160,12 @@ class LiteralProgram:
             return
         call = self._under_way = self._calls.popleft()
         facts = DeskFacts(self._reads.name, self._reads.agents, ("bot",))
-        told = self._desk.admit_skill(call.name, call.wires, facts)
-        if "error" in told and not told.get("later"):
-            self._end(told["error"])
+        admission = self._desk.admit_skill(call.name, call.wires, facts)
+        if "error" in admission and not admission.get("later"):
+            self._end(admission["error"])
             return
         self._number += 1
-        self._requests.append(Request.admitted(self._number, call.name, told))
+        self._requests.append(Request.admitted(self._number, call.name, admission))
 
     def _end(self, error: Mapping[str, Any]) -> None:
         line, column = self._place()

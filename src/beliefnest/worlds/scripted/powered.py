@@ -93,14 +93,14 @@ class PoweredState(ScriptedState):
         if not self._facts.plates:
             return []
         facts, plates = self._facts, Circuits.load().plates
-        found = [p for each in facts.agents.values() for p in self._under(each.position, _AGENT)]
-        found += [
+        places = [p for each in facts.agents.values() for p in self._under(each.position, _AGENT)]
+        places += [
             place
             for each in facts.items.values()
             for place in self._under(each.position, _ITEM)
             if plates[self.state_at(place)] == "all"
         ]
-        return list(dict.fromkeys(found))
+        return list(dict.fromkeys(places))
 
     def _under(self, feet: Point, size: tuple[float, float]) -> Iterator[Position]:
         """Yield the plates that a body touches."""

@@ -34,21 +34,21 @@ class Memory:
 
     def called(self, number: int, name: str, args: list[Any], tick: int) -> tuple[bool, Any] | None:
         """Record a call; return its result from before the interruption, or None."""
-        given = json.dumps(args)
-        known = self._past.pop(0) if self._past else None
-        if known is not None and (known.name, known.given) != (name, given):
+        arguments = json.dumps(args)
+        past = self._past.pop(0) if self._past else None
+        if past is not None and (past.name, past.given) != (name, arguments):
             # From here on the program takes another course.
             self._past.clear()
-            known = None
-        before = 0 if known is None else known.ticks
-        answer = None if known is None else known.answer
-        since = tick if known is None else known.since
-        call = Called(name, given, answer, since=since)
+            past = None
+        before = 0 if past is None else past.ticks
+        answer = None if past is None else past.answer
+        since = tick if past is None else past.since
+        call = Called(name, arguments, answer, since=since)
         self._entries[number] = _Entry(call, tick, before)
         if answer is None:
             return None
-        told = json.loads(answer)
-        return told["ok"], told["value"]
+        reply = json.loads(answer)
+        return reply["ok"], reply["value"]
 
     def left(self, number: int, args: list[Any]) -> list[Any]:
         """Return the arguments of an interrupted call; a wait continues with the ticks left."""

@@ -296,9 +296,9 @@ def _take_calls(run: _Run) -> None:
 
 def _begin(run: _Run, request: Request) -> None:
     number, name, now = request.number, request.name, run.hand.world.now
-    known = run.memory.called(number, name, request.args, now)
-    if known is not None:
-        _tell(run, number, ok=known[0], value=known[1])
+    past = run.memory.called(number, name, request.args, now)
+    if past is not None:
+        _tell(run, number, ok=past[0], value=past[1])
         return
     if request.aim is not None and len(run.aims) < _MOST_AIMS:
         run.aims.append(_aim(now, request.aim))

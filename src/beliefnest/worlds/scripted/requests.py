@@ -30,10 +30,10 @@ class Request:
     error: Mapping[str, Any] | None = None
 
     @classmethod
-    def admitted(cls, number: int, name: str, told: Mapping[str, Any]) -> "Request":
+    def admitted(cls, number: int, name: str, admission: Mapping[str, Any]) -> "Request":
         """Return a request as the desk admitted it."""
-        own, checked = told.get("own", []), told.get("checked", [])
-        return cls(number, name, own, checked, told.get("aim"), told.get("error"))
+        own, checked = admission.get("own", []), admission.get("checked", [])
+        return cls(number, name, own, checked, admission.get("aim"), admission.get("error"))
 
 
 def error_of(name: str, error: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -46,11 +46,11 @@ def error_of(name: str, error: Mapping[str, Any]) -> Mapping[str, Any]:
     if "$" in error:
         return error
     reason = {"reason": error["reason"]} if error["reason"] else {}
-    told = {"$": "e", "skill": name, "kind": "skill", **reason}
+    error_fields = {"$": "e", "skill": name, "kind": "skill", **reason}
     # Errors of the bot's own methods do not begin with their names.
     if name not in _skills():
-        return {**told, "message": error["message"], "name": "Error"}
-    return {**told, "message": f"{name}: {error['message']}", "name": "SkillError"}
+        return {**error_fields, "message": error["message"], "name": "Error"}
+    return {**error_fields, "message": f"{name}: {error['message']}", "name": "SkillError"}
 
 
 def fault_of(error: Mapping[str, Any]) -> Fault:

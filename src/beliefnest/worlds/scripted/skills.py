@@ -95,7 +95,7 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
 
 
 def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doing:
-    place, told = block_in(position), _claims(claims)
+    place, sign_claims = block_in(position), _claims(claims)
     text = "\n".join(lines) if _is_lines(lines) else lines
     if not isinstance(text, str):
         raise SkillError(f"text must be a text; it is {quoted(text)}")
@@ -105,7 +105,7 @@ def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doin
     if not hand.ground().is_sign(place):
         raise hand.lacking("sign", place, _SIGN)
     yield 0
-    hand.world.write_sign(hand.name, place, text, told)
+    hand.world.write_sign(hand.name, place, text, sign_claims)
 
 
 def _is_lines(value: Any) -> bool:
@@ -137,9 +137,9 @@ def _read_sign(hand: Hand, position: Any) -> Doing:
     return hand.signs().get(place, "")
 
 
-def _claims(told: Any) -> tuple[Claim, ...]:
+def _claims(plain: Any) -> tuple[Claim, ...]:
     try:
-        return claims_from_plain(told or ())
+        return claims_from_plain(plain or ())
     except InputError as fault:
         raise SkillError(
             f"{fault}; make each with located, absent, positionOf or blockAt, "

@@ -118,11 +118,11 @@ class ScriptedState(Barred):
         pending.replaced.append((self._box.index(place), before))
         halves = [other_half(self._registry, each, place) for each in (before, state)]
         near = {place, *(each[0] for each in halves if each is not None)}
-        held = {each: self._facts.containers.get(each) for each in near}
+        contents_before = {each: self._facts.containers.get(each) for each in near}
         was_double = is_double(self._registry, self.state_at, place)
         self._put(place, self._registry.text(state))
         pending.containers |= {
-            each for each in near if self._facts.containers.get(each) is not held[each]
+            each for each in near if self._facts.containers.get(each) is not contents_before[each]
         }
         gone = self._registry.name(before) != self._registry.name(state)
         if was_double and gone and halves[0] is not None:
@@ -223,12 +223,12 @@ class ScriptedState(Barred):
         equipment: dict[str, str] | None = None,
     ) -> None:
         agent = self._agent(name)
-        held = agent.inventory if inventory is None else inventory
+        items = agent.inventory if inventory is None else inventory
         worn = agent.equipment if equipment is None else equipment
-        gone = agent.inventory.keys() - held.keys()
+        gone = agent.inventory.keys() - items.keys()
         self._facts.agents[name] = replace(
             agent,
-            inventory=held,
+            inventory=items,
             equipment={slot: item for slot, item in worn.items() if item not in gone},
         )
 
@@ -278,9 +278,9 @@ class ScriptedState(Barred):
                 )
         return dict(items)
 
-    def _fitting(self, who: str, held: Items, moved: Items, slots: int) -> dict[str, int]:
+    def _fitting(self, who: str, inventory: Items, moved: Items, slots: int) -> dict[str, int]:
         """Return the items of a holder after a transfer; WorldError if they do not fit."""
-        items = sum_of(held, moved)
+        items = sum_of(inventory, moved)
         if fault := items_fault(items, self._registry, slots, who):
             raise WorldError(f"{moved} cannot be moved: {fault}")
         return items

@@ -55,13 +55,13 @@ class Machine:
         self._kept: list[object] = []
         self._raised: BaseException | None = None
         self._memory = w.Memory(self._store, w.MemoryType(w.Limits(*pages)))
-        given = [
+        given_imports = [
             self._function(kind, imports.get(name, _nothing))
             if isinstance(kind, w.FuncType)
             else self._memory
             for name, kind in code.imports
         ]
-        self._instance = w.Instance(self._store, code.module, given)._instance
+        self._instance = w.Instance(self._store, code.module, given_imports)._instance
         self._functions: dict[str, Any] = {}
         self._globals: dict[str, Any] = {}
 
@@ -134,26 +134,26 @@ class Machine:
             raise TrapError("an address is out of the memory")
         return ctypes.string_at(self.address(place), length)
 
-    def write(self, place: int, held: bytes) -> None:
+    def write(self, place: int, content: bytes) -> None:
         """Write bytes into the memory."""
-        if not 0 <= place <= place + len(held) <= self.size:
+        if not 0 <= place <= place + len(content) <= self.size:
             raise TrapError("an address is out of the memory")
-        ctypes.memmove(self.address(place), held, len(held))
+        ctypes.memmove(self.address(place), content, len(content))
 
     def _export(self, name: str) -> Any:
         item, letters = self._ffi.wasmtime_extern_t(), name.encode()
-        held = ctypes.create_string_buffer(letters)
+        name_buffer = ctypes.create_string_buffer(letters)
         if not self._ffi.wasmtime_instance_export_get(
-            self._context, byref(self._instance), held, len(letters), byref(item)
+            self._context, byref(self._instance), name_buffer, len(letters), byref(item)
         ):
             raise KeyError(name)
         return item.of
 
     def _global(self, name: str) -> Any:
-        found = self._globals.get(name)
-        if found is None:
-            found = self._globals[name] = self._export(name).global_
-        return found
+        exported = self._globals.get(name)
+        if exported is None:
+            exported = self._globals[name] = self._export(name).global_
+        return exported
 
     def _called(self, function: Any) -> int:
         words, trap = self._words, self._trap

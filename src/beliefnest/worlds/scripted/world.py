@@ -105,8 +105,8 @@ class ScriptedWorld(PoweredState):
             self._set_agent(name, inventory=self._items(items))
         for name, worn in (equipment or {}).items():
             self._set_agent(name, equipment=checked_equipment(worn, self._items))
-        for position, told in (sign_claims or {}).items():
-            self._claim_on(self._inside(position), self._claiming({}, told).get("claims", ()))
+        for position, claims in (sign_claims or {}).items():
+            self._claim_on(self._inside(position), self._claiming({}, claims).get("claims", ()))
         if fault := snapshot_fault(self.snapshot(), self._registry):
             raise WorldError(fault)
 
@@ -274,9 +274,9 @@ class ScriptedWorld(PoweredState):
             state = self.state_at(place)
             drops = Handling.load().drops(self._registry.name(state), agent.inventory)
             check_holds_nothing(self._registry, self.state_at, place)
-            held = self._fitting(name, agent.inventory, drops, AGENT_SLOTS + WORN_SLOTS)
+            items = self._fitting(name, agent.inventory, drops, AGENT_SLOTS + WORN_SLOTS)
             self._alter(pending, place, AIR)
-            self._set_agent(name, inventory=held)
+            self._set_agent(name, inventory=items)
             pending.agents.add(name)
             detail = {"position": place, "block": self._registry.text(state)}
             pending.events.append(Event(EventKind.MINE_BLOCK, name, detail))
@@ -287,11 +287,11 @@ class ScriptedWorld(PoweredState):
             agent = self._agent(name)
             place = self._inside(position)
             moved = self._items({item: 1})
-            held = rest_of(agent.inventory, moved, f"{name} cannot put {item}: it")
+            items = rest_of(agent.inventory, moved, f"{name} cannot put {item}: it")
             bodies = [each.position for each in self._facts.agents.values()]
             state = put_block(self._registry, self.state_at, place, item, bodies)
             self._alter(pending, place, state)
-            self._set_agent(name, inventory=held)
+            self._set_agent(name, inventory=items)
             pending.agents.add(name)
             detail = {"position": place, "block": self._registry.text(state)}
             pending.events.append(Event(EventKind.PLACE_BLOCK, name, detail))
@@ -364,8 +364,8 @@ class ScriptedWorld(PoweredState):
                 raise WorldError(f"{giver} cannot give items to itself")
             other = self._agent(receiver)
             moved = self._items(items)
-            held = rest_of(self._agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
-            self._set_agent(giver, inventory=held)
+            left = rest_of(self._agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
+            self._set_agent(giver, inventory=left)
             self._set_agent(
                 receiver,
                 inventory=self._fitting(receiver, other.inventory, moved, AGENT_SLOTS + WORN_SLOTS),
@@ -402,16 +402,16 @@ class ScriptedWorld(PoweredState):
             agent = self._agent(name)
             place = self._container(position)
             moved = self._items(items)
-            held, inside = agent.inventory, self._facts.containers[place]
+            inventory, inside = agent.inventory, self._facts.containers[place]
             if kind is EventKind.DEPOSIT_ITEM_INTO_CHEST:
-                held = rest_of(held, moved, f"{name} cannot put {moved} into {place}: it")
+                inventory = rest_of(inventory, moved, f"{name} cannot put {moved} into {place}: it")
                 there = self._registry.name(self.state_at(place))
                 slots = slots_at(self._registry, self.state_at, place)
                 inside = self._fitting(f"the {there} at {place}", inside, moved, slots)
             else:
                 inside = rest_of(inside, moved, f"{name} cannot take {moved}: the one at {place}")
-                held = self._fitting(name, held, moved, AGENT_SLOTS + WORN_SLOTS)
-            self._set_agent(name, inventory=held)
+                inventory = self._fitting(name, inventory, moved, AGENT_SLOTS + WORN_SLOTS)
+            self._set_agent(name, inventory=inventory)
             self._facts.containers[place] = inside
             pending.agents.add(name)
             pending.containers.add(place)

@@ -86,9 +86,9 @@ class ServerAddress:
         options: dict[str, Any] = {}
         for key, value in parse_qsl(parts.query, keep_blank_values=True):
             if key not in _OPTIONS:
-                known = ", ".join(_OPTIONS)
+                known_options = ", ".join(_OPTIONS)
                 raise InputError(
-                    f"{text!r} has the unknown option {key!r}; known options are {known}"
+                    f"{text!r} has the unknown option {key!r}; known options are {known_options}"
                 )
             if key in options:
                 raise InputError(f"{text!r} has the option {key!r} twice; give it once")
@@ -125,9 +125,9 @@ def _yes(key: str, value: str) -> bool:
 
 
 def _place(key: str, value: str) -> tuple[int, int]:
-    found = re.fullmatch(r"(-?\d{1,8}),(-?\d{1,8})", value)
-    if found is not None:
-        x, z = int(found[1]), int(found[2])
+    match = re.fullmatch(r"(-?\d{1,8}),(-?\d{1,8})", value)
+    if match is not None:
+        x, z = int(match[1]), int(match[2])
         if x % _CHUNK == z % _CHUNK == 0 and max(abs(x), abs(z)) <= _FARTHEST:
             return x, z
     raise InputError(

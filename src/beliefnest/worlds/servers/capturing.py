@@ -73,20 +73,20 @@ def capture_server(address: ServerAddress, box: Box) -> Captured:
     if fault := box_fault(box):
         raise InputError(fault)
     channel, _ = joined(address, 0, ProcessLimits())
-    told = _asked(channel, "capture", box=[box.low, box.high], cut=node_messages.CUT)
-    found = msgspec.convert(told, _Found)
-    snapshot, left_out = _said(node_messages.snapshot_of(told, box), Registry.load())
-    if found.unread:
-        left_out.append(f"what is in {_named(found.unread)}: it does not open there")
-    if found.unasked:
+    answer = _asked(channel, "capture", box=[box.low, box.high], cut=node_messages.CUT)
+    seen = msgspec.convert(answer, _Found)
+    snapshot, left_out = _said(node_messages.snapshot_of(answer, box), Registry.load())
+    if seen.unread:
+        left_out.append(f"what is in {_named(seen.unread)}: it does not open there")
+    if seen.unasked:
         left_out.append(
-            f"what {', '.join(found.unasked)} have but do not wear or hold: the server has no "
+            f"what {', '.join(seen.unasked)} have but do not wear or hold: the server has no "
             "/data that could be asked"
         )
-    if found.strange:
+    if seen.strange:
         left_out.append(
             "blocks that this version has not, now stone, or air where one can walk: "
-            + _named(found.strange)
+            + _named(seen.strange)
         )
     return Captured(snapshot, tuple(left_out))
 
@@ -107,9 +107,9 @@ def capture_file(data: bytes, corner: Position, unknown: Unknown = "refuse") -> 
     if unknown not in ("refuse", "air"):
         raise InputError(f"unknown is {quoted(unknown)}; give 'refuse' or 'air'")
     channel, _ = started(0, ProcessLimits())
-    told = _asked(channel, "read_place", bytes=data, cut=node_messages.CUT)
+    answer = _asked(channel, "read_place", bytes=data, cut=node_messages.CUT)
     try:
-        place = msgspec.convert(told, _Place)
+        place = msgspec.convert(answer, _Place)
     except msgspec.ValidationError as error:
         raise InputError(f"the file is damaged: {shortened(str(error))}") from None
     high = tuple(low + side - 1 for low, side in zip(corner, place.shape, strict=True))
@@ -173,42 +173,42 @@ def _states(palette: Sequence[str], registry: Registry) -> tuple[BlockGrid, set[
     return states, unknown
 
 
-def _said(found: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
+def _said(snapshot: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
     """Return the part of a place that a scenario can express, and sentences about the rest."""
     left_out = []
-    blocks = found.blocks.mapped(
+    blocks = snapshot.blocks.mapped(
         lambda states: np.where(np.isin(states, registry.airs), registry.air, states)
     )
-    found = replace(found, blocks=blocks)
+    snapshot = replace(snapshot, blocks=blocks)
     names = {state: registry.name(state) for state in blocks.states}
 
     def name_at(place: Position) -> str:
-        return names[found.blocks[found.box.index(place)]]
+        return names[snapshot.blocks[snapshot.box.index(place)]]
 
     containers: dict[Position, Items] = {}
     others, strange = set(), set()
-    for place, items in found.containers.items():
+    for place, items in snapshot.containers.items():
         strange |= {item for item in items if not registry.has_item(item)}
         if registry.is_container(name_at(place)):
             containers[place] = {i: count for i, count in items.items() if registry.has_item(i)}
         elif items:
             others.add(name_at(place))
-    for place in found.places(_container_states(names, registry)):
+    for place in snapshot.places(_container_states(names, registry)):
         containers.setdefault(place, {})
     signs = {
         place: text
-        for place, text in found.signs.items()
+        for place, text in snapshot.signs.items()
         if text and is_sign(name_at(place)) and sign_fault(text) is None
     }
-    agents = {name: _known(agent, registry, strange) for name, agent in found.agents.items()}
+    agents = {name: _known(agent, registry, strange) for name, agent in snapshot.agents.items()}
     if others:
         left_out.append(f"what is in blocks that are no containers here: {_named(others)}")
     if strange:
         left_out.append(f"items that Minecraft {registry.version} has not: {_named(strange)}")
-    if unsaid := {place for place, text in found.signs.items() if text} - signs.keys():
+    if unsaid := {place for place, text in snapshot.signs.items() if text} - signs.keys():
         left_out.append(f"what is written at {_named(unsaid)}: it does not fit on a sign here")
     return (
-        replace(found, containers=dict(sorted(containers.items())), signs=signs, agents=agents),
+        replace(snapshot, containers=dict(sorted(containers.items())), signs=signs, agents=agents),
         left_out,
     )
 

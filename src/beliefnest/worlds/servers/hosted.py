@@ -90,11 +90,11 @@ class HostedWorld(RealtimeWorld):
             self._seed, self._limits, HOSTING, listen=self._address.told
         )
         try:
-            told = channel.request("people", invited=sorted(self._invited))
+            answer = channel.request("people", invited=sorted(self._invited))
             channel.request("pause", paused=self._paused)
         except BodyError:
             channel.close()
             raise
         # If any port was allowed, keep the one that people know.
-        self._address = replace(self._address, port=told["port"])
+        self._address = replace(self._address, port=answer["port"])
         return channel

@@ -61,10 +61,10 @@ class ListenAddress:
         return cls.of(world.removeprefix(f"{_SCHEME}://"))
 
     @classmethod
-    def _checked(cls, host: str, port: int, given: object) -> "ListenAddress":
+    def _checked(cls, host: str, port: int, value: object) -> "ListenAddress":
         if isinstance(port, bool) or not 0 <= port <= _HIGHEST:
             raise InputError(
-                f"listen is {given!r}; a port is a number from 1 to {_HIGHEST}, 0 is any free one"
+                f"listen is {value!r}; a port is a number from 1 to {_HIGHEST}, 0 is any free one"
             )
         return cls(host, port)
 

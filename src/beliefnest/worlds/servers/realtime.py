@@ -84,8 +84,8 @@ class RealtimeWorld(NodeWorld):
 
     def here(self) -> frozenset[str]:
         """Return the names of the people who play now."""
-        told = self._live().request("people", invited=sorted(self._invited))
-        return frozenset(told["here"])
+        answer = self._live().request("people", invited=sorted(self._invited))
+        return frozenset(answer["here"])
 
     @property
     def versions(self) -> Mapping[str, str]:
@@ -107,8 +107,8 @@ class RealtimeWorld(NodeWorld):
         self._beliefs.knows(snapshot.agents)
         if name != _REALITY:
             return self._beliefs.open_body(name, seed, snapshot, sink)
-        known = sorted(snapshot.agents)
-        return RealtimeBody.opened(self._live(), name, seed, snapshot, sink, known)
+        agents = sorted(snapshot.agents)
+        return RealtimeBody.opened(self._live(), name, seed, snapshot, sink, agents)
 
     def another(self) -> EmbeddedWorld:
         """Return an embedded world, for trials at full speed that nobody sees.
