@@ -8,7 +8,7 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.belief.view import State
-from beliefnest.errors import InputError
+from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.facts.kinds import FactEntry
 from beliefnest.facts.reading import PlainScene, conditions_of, fact_entry, fact_in, plain_entry
 from beliefnest.facts.states import StateFacts
@@ -40,10 +40,15 @@ def test_a_fact_with_keys_that_do_not_fit_is_refused() -> None:
         ),
         ({"block": DOOR}, "makes no sense; give block and state or block and like$"),
         ({"agent": "ann", "at": [1, 1, 1], "withn": 2}, "'withn'; did you mean 'within'"),
+        ({"container": CHEST, "itmes": {"apple": 1}}, "'itmes'; did you mean 'items'"),
+        ({"heard": ""}, "^'heard' is empty; give part of an utterance$"),
+        ({"not_heard": " "}, "^'not_heard' is empty; give part of an utterance$"),
+        ({"block": DOOR, "like": SIGN, "property": "zz"}, "no block has the property 'zz'; give"),
+        ({"block": DOOR, "like": SIGN, "property": "opne"}, "'opne'; did you mean open"),
     ],
 )
 def test_a_fact_that_makes_no_sense_is_told_what_to_give(given: dict[str, Any], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(BeliefNestError, match=told):
         fact_entry(given, SCENE)
 
 

@@ -129,7 +129,7 @@ FAULTS = [
     ("{block: gold_block}, right", "{block: gold_blok}, right", 18, "probes[0].infer", "gold_blok"),
     ("{block: gold_block}, right", "{at: [9, 1, 1]}, right", 20, ".goals.left.at", "outside"),
     ("range: [0, 40]", "range: [40, 0]", 21, ".utilities.right.range", "lower one first"),
-    ("step: 20", "step: 0", 21, ".utilities.right", "> 0"),
+    ("step: 20", "step: 0", 21, ".utilities.right", "above 0"),
     ("step: 20", "step: 1.0e-9", 21, ".utilities.right", "larger step"),
     ("step: 20", "step: 1.0e-4", 18, "probes[0].infer", "hypotheses"),
     ("[0, 20, 40], right", "x, right", 21, ".utilities.left", "expected"),

@@ -101,7 +101,7 @@ def test_places_are_free_above_its_blocks():
         ({"chunks": 10**9}, "chunks need 4,096,000 MB; this process may use 5,000 MB, a test"),
         ({"states": ["air"]}, "names the states 0 to 4, but there are 1"),
         ({"states": [*TEXTS[:-1], "levr"]}, "no block 'levr' in"),
-        ({"chunks": -1}, "terrain.chunks: expected 'int' >= 0"),
+        ({"chunks": -1}, "terrain.chunks: expected an integer, at least 0, got -1"),
     ],
 )
 def test_damage_is_told_with_the_key(change, told, monkeypatch):

@@ -63,8 +63,10 @@ def test_conditions_that_are_not_there_are_listed_and_alone_are_refused(tmp_path
     plan = bn.Study("sally-anne", conditions=[1, 9]).plan()
     assert len(plan.cells) == 1
     assert [(each.condition, told in each.why) for each in plan.invalid] == [(9, True)]
-    with pytest.raises(bn.InputError, match=told):
-        bn.Study("sally-anne", conditions=[9]).run(tmp_path / "out", jobs=1)
+    for variations in (None, 2):
+        study = bn.Study("sally-anne", variations=variations, conditions=[9])
+        with pytest.raises(bn.InputError, match=told):
+            study.run(tmp_path / "out", jobs=1)
 
 
 def test_several_templates_are_told_apart_everywhere(tmp_path):
@@ -233,6 +235,18 @@ def test_a_world_that_fails_is_a_row_that_says_why(tmp_path):
             "scenarios: [small.yaml]\nvariations: {agents: [{an: tom}]}\n",
             "study.yaml:2: variations: no combination is valid; the reason of the first: there is",
         ),
+        (
+            "scenarios: [small.yaml]\nvariations: 2\nconstraints: [spto == 1]\n",
+            "study.yaml:3: constraints[0]: there is no parameter 'spto'; did you mean 'spot'?",
+        ),
+        (
+            "scenarios: [small.yaml]\nconstraints: [spot ==]\n",
+            "study.yaml:2: constraints[0]: 'spot ==' is no expression",
+        ),
+        (
+            "scenarios: [small.yaml]\nvariations: 2\nconstraints: [spot * 2 > 1]\n",
+            "study.yaml:3: constraints[0]: 'spot * 2 > 1' cannot be computed",
+        ),
         ("scenarios: [small.yaml]\nworld: moon\n", "there is no world 'moon'"),
         (
             "scenarios: [small.yaml]\nmodels:\n- offline\n- ofline\n",
@@ -326,6 +340,7 @@ def test_a_folder_of_something_else_stays_as_it_is(tmp_path, capsys):
         ({"models": [None]}, "models is [None]"),
         ({"templates": 3}, "templates is 3"),
         ({"templates": ["paper", "paper"]}, "templates: 'paper' is named twice"),
+        ({"balance": ["first", "first"]}, "balance: 'first' is named twice"),
         ({"conditions": []}, "conditions is []"),
         ({"conditions": ["one"]}, "'one' is no condition"),
         ({"constraints": [3]}, "constraints has 3"),

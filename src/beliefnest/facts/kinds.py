@@ -16,6 +16,7 @@ from typing import Annotated, Any, ClassVar
 import msgspec
 
 from beliefnest.belief.grounds import PerceivedEvent
+from beliefnest.errors import InputError
 from beliefnest.facts.effort import FAR, PER_BLOCK, to_agent, to_block, to_container
 from beliefnest.facts.states import Facts, Look, PlanFacts, StateFacts
 from beliefnest.world import forms
@@ -25,6 +26,7 @@ from beliefnest.world.forms import note
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry, block_name, parse_state
 from beliefnest.world.signs import sign_words
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import EYE_HEIGHT, Items, Point, Position, block_at
 from beliefnest.world.words import items_words, point_text, point_words
 
@@ -658,6 +660,10 @@ class BlocksAlike(_BlockFact):
     model: Position
     only: str = ""
 
+    def __post_init__(self) -> None:
+        if self.only:
+            Registry.load().check_property(self.only)
+
     def __str__(self) -> str:
         return f"{self.only or 'the block'} at {self.place} as at {self.model}"
 
@@ -721,24 +727,21 @@ class SignSays(Fact):
 
 @dataclass(frozen=True, slots=True)
 class Heard(Fact):
-    """Fact: an utterance is known, or none is.
+    """Fact: an utterance is known.
 
     Attributes:
-        text: Part of an utterance.
-        ever: True if an utterance with this part is known; False if none is.
+        text: Part of the utterance.
+        ever: False for the opposite, that no utterance with this part is known.
     """
 
     keys = ("heard",)
     noted = True
+    ever: ClassVar[bool] = True
     text: str
-    ever: bool = True
 
-    @classmethod
-    def read(cls, entry: FactEntry) -> "Heard | None":
-        return cls(entry.heard) if entry.heard else None
-
-    def written(self) -> dict[str, Any]:
-        return {"heard" if self.ever else "not_heard": self.text}
+    def __post_init__(self) -> None:
+        if not self.text.strip():
+            raise InputError(f"{quoted(self.keys[0])} is empty; give part of an utterance")
 
     def __str__(self) -> str:
         return f"{self.text!r} {'was' if self.ever else 'was not'} heard"
@@ -760,15 +763,12 @@ class Heard(Fact):
         return {each.actor for each in said if self.text in each.detail["text"]}
 
 
-class _NotHeard(Heard):
+class NotHeard(Heard):
     """Fact: no known utterance contains a text."""
 
     __slots__ = ()
     keys = ("not_heard",)
-
-    @classmethod
-    def read(cls, entry: FactEntry) -> "Heard | None":
-        return Heard(entry.not_heard, ever=False) if entry.not_heard else None
+    ever = False
 
 
 KINDS: tuple[type[Fact], ...] = (
@@ -781,7 +781,7 @@ KINDS: tuple[type[Fact], ...] = (
     BlocksAlike,
     SignSays,
     Heard,
-    _NotHeard,
+    NotHeard,
 )
 """Kinds of facts that entries can state."""
 

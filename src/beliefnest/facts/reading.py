@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
 from beliefnest.facts.kinds import KINDS, Fact, FactEntry, GoalCondition
 from beliefnest.world.forms import scene_kinds
 from beliefnest.world.paths import BeliefPath, parse_path
@@ -160,7 +160,7 @@ def check_entry(entry: FactEntry, path: Where, scene: FactScene) -> FactEntry:
     """
     try:
         fact_in(entry)
-    except InputError as error:
+    except (InputError, UnknownNameError) as error:
         raise scene.fault(path, str(error)) from None
     scene.belief_path((*path, "path"), entry.path)
     for key, kind in _SCENE_KINDS.items():

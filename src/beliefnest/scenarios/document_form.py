@@ -138,7 +138,8 @@ def _fault_at(document: Document, path: KeyPath, match: re.Match[str]) -> Scenar
         quotes = "; put it into quotes" if what.startswith("expected 'str'") else ""
         return document.fault(path, f"a key in it: {what}{quotes}")
     value = plain(_node_at(document.root, list(path)))
-    if " got " in what and (wanted := wanted_form(path)):
+    in_range = " got " in what
+    if what.startswith("expected") and (wanted := wanted_form(path, ranges=not in_range)):
         at = _standing(document.root, value) if _PLACE in wanted else ""
         what = f"expected {wanted}, got {quoted(value)}{at}"
     return document.fault(path, what + _found(value, what) + _allowed(path, value, what))

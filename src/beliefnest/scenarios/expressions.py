@@ -95,7 +95,7 @@ def _value(  # noqa: PLR0911
             return value
         case ast.Name(id=name):
             if name not in values:
-                hint = nearest_or_all(name, [*values] or ["none"], "declared are")
+                hint = nearest_or_all(name, [*values], "declared are")
                 raise InputError(f"{quoted(text)} names {quoted(name)}{hint}")
             return values[name]
         case ast.List(elts=parts) | ast.Tuple(elts=parts):

@@ -294,7 +294,7 @@ def _rule(
     """
     path = (_KEY, str(name))
     if name not in declared:
-        hint = nearest_or_all(str(name), [*declared] or ["none"], "declared are")
+        hint = nearest_or_all(str(name), [*declared], "declared are")
         raise document.fault(path, f"is no parameter{hint}")
     try:
         rule = msgspec.convert(plain(node) or {}, InstanceEntry)

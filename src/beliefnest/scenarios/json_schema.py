@@ -128,10 +128,26 @@ def allowed_values(path: Iterable[str | int]) -> list[str]:
     return sorted({str(value) for place in _places(path) for value in place.get("enum", [])})
 
 
-def wanted_form(path: Iterable[str | int], file: type = ScenarioFile) -> str:
-    """Return in words what stands at a place of a file, with examples of lists."""
-    forms = (_words(each) for each in _places(path, file) if each.get("type", "null") != "null")
+def wanted_form(
+    path: Iterable[str | int], file: type = ScenarioFile, *, ranges: bool = False
+) -> str:
+    """Return in words what stands at a place of a file, with examples of lists.
+
+    Args:
+        path: The place.
+        file: Form of the file.
+        ranges: True to say which numbers are allowed.
+    """
+    places = [each for each in _places(path, file) if each.get("type", "null") != "null"]
+    forms = (_words(each) + (_range(each) if ranges else "") for each in places)
     return ", or ".join(dict.fromkeys(forms))
+
+
+def _range(form: dict[str, Any]) -> str:
+    """Return the bounds of a number in words; empty if it has none."""
+    words = {"minimum": "at least", "exclusiveMinimum": "above", "maximum": "at most"}
+    bounds = " and ".join(f"{word} {form[key]:,}" for key, word in words.items() if key in form)
+    return f", {bounds}" if told else ""
 
 
 _WORDS = {

@@ -141,7 +141,7 @@ def check_declared(
         raise document.fault((), f"parameters is {quoted(values)}; give values by name")
     for name, value in values.items():
         if name not in declared:
-            hint = nearest_or_all(str(name), [*declared] or ["none"], "declared are")
+            hint = nearest_or_all(str(name), [*declared], "declared are")
             raise document.fault((), f"there is no parameter {quoted(name)}{hint}")
         if value is None and None not in (declared[name].default, *(declared[name].values or ())):
             raise document.fault(("parameters", name), "is None; give a value")

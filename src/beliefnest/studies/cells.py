@@ -8,7 +8,7 @@ from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.plan.cells import Invalid, Plan
 from beliefnest.plan.scenario_cells import Cell, CellKey, content_of
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template
-from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.parameters import declared_in
 from beliefnest.scenarios.scenario import Scenario
@@ -38,7 +38,7 @@ def plan_cells(
         ScenarioError: A scenario is wrong even without any variation.
         InputError: Two scenarios have the same name, or no scenario declares a parameter.
     """
-    _check_parameters(design, documents)
+    _check_names(design, documents)
     cells: list[Cell] = []
     invalid: list[Invalid] = []
     called: dict[str, str] = {}
@@ -53,7 +53,7 @@ def plan_cells(
             )
         invalid += _unknown_conditions(design, name, document)
         cells_by_variation: list[dict[int, list[Cell]]] = []
-        variations = _variations(design, document)
+        variations = _variations(design, document) if conditions else ()
         for done, variation in enumerate(variations):
             on_variation(done, len(variations))
             cells_by_variation.append({})
@@ -75,16 +75,18 @@ def plan_cells(
     return Plan(tuple(cells), tuple(invalid))
 
 
-def _check_parameters(design: Design, documents: Mapping[str, Document]) -> None:
-    """Raise StudyKeyError if no scenario declares a parameter that a design varies."""
-    if isinstance(design.variations, int):
-        return
+def _check_names(design: Design, documents: Mapping[str, Document]) -> None:
+    """Raise StudyKeyError if no scenario declares a parameter that a design names."""
     declared = {name for each in documents.values() for name in declared_in(each)}
     names = (*sorted(declared), *CHANGES)
-    for name in design.variations:
+    varied = [] if isinstance(design.variations, int) else list(design.variations)
+    places: list[tuple[KeyPath, str]] = [(("variations", name), name) for name in varied]
+    for number, named in design.constrained():
+        places += [(("constraints", number), name) for name in sorted(named)]
+    for place, name in places:
         if name not in names:
             message = f"there is no parameter {quoted(name)}{nearest_or_all(name, names)}"
-            raise StudyKeyError(("variations", name), message)
+            raise StudyKeyError(place, message)
 
 
 def _allocated(

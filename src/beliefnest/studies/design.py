@@ -1,7 +1,7 @@
 """Checked design of a study of scenarios: the values that it combines."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from beliefnest.prompts.templates import (
     load_template,
 )
 from beliefnest.scenarios.document import Document
-from beliefnest.scenarios.expressions import evaluate
+from beliefnest.scenarios.expressions import evaluate, names_in
 from beliefnest.scenarios.parameters import declared_in
 from beliefnest.studies.allocation import Allocation
 from beliefnest.studies.checking import (
@@ -86,6 +86,7 @@ class Design:
                 raise StudyKeyError(name, f"a study without {name} has no cells; name at least one")
             check_once(name, values)
         check_once("templates", [template.name for template in self.templates])
+        check_once("balance", self.balance)
         check_count("repeats", self.repeats)
         check_count("attempts", self.attempts)
         if self.temperature is not None and not is_amount(self.temperature):
@@ -152,33 +153,45 @@ class Design:
             **self.setting,
         }
 
+    def constrained(self) -> Iterator[tuple[int, frozenset[str]]]:
+        """Yield the number of each constraint in words, and the names in it.
+
+        Raises:
+            StudyKeyError: A constraint is no expression.
+        """
+        for number, constraint in enumerate(self.constraints):
+            if isinstance(constraint, str):
+                try:
+                    yield number, names_in(constraint)
+                except InputError as error:
+                    raise StudyKeyError(("constraints", number), str(error)) from None
+
     def broken_constraint(
         self, document: Document, condition: int | None, variation: Variation
     ) -> BeliefNestError | None:
         """Return an error for the first constraint that a variation breaks; None: none.
 
         Raises:
-            InputError: A constraint cannot be computed.
+            StudyKeyError: A constraint cannot be computed.
         """
         declared = declared_in(document, condition)
         defaults = {name: entry.default for name, entry in declared.items()}
         values = {**dict.fromkeys(CHANGES), **defaults, **variation.values}
-        for constraint in self.constraints:
-            constraint_text = getattr(constraint, "__name__", str(constraint))
-            if not _holds(constraint, constraint_text, values):
-                return ScenarioError(f"the constraint {quoted(constraint_text)} does not hold")
+        for number, constraint in enumerate(self.constraints):
+            words = f"the constraint {quoted(getattr(constraint, '__name__', constraint))}"
+            try:
+                if isinstance(constraint, str):
+                    holds = bool(evaluate(constraint, values))
+                else:
+                    holds = bool(constraint(values))
+            except InputError as error:
+                raise StudyKeyError(("constraints", number), str(error)) from None
+            except Exception as error:  # a user's function may raise anything; report it
+                message = f"{words} raised {type(error).__name__}: {error}"
+                raise StudyKeyError(("constraints", number), message) from error
+            if not holds:
+                return ScenarioError(f"{words} does not hold")
         return None
-
-
-def _holds(constraint: Constraint, constraint_text: str, values: Mapping[str, Any]) -> bool:
-    if isinstance(constraint, str):
-        return bool(evaluate(constraint, values))
-    try:
-        return bool(constraint(values))
-    except Exception as error:  # a user's function may raise anything; report it
-        raise InputError(
-            f"the constraint {quoted(constraint_text)} raised {type(error).__name__}: {error}"
-        ) from error
 
 
 def template_named(name: str, folder: Path = Path()) -> Template:

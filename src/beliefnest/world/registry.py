@@ -271,9 +271,18 @@ class Registry:
             )
         return self._items[bare]
 
+    @functools.cache  # noqa: B019 - a registry is loaded once per process
+    def check_property(self, name: str) -> None:
+        """Raise UnknownNameError if no block has a property."""
+        names = {each for block in self._block_order for each, _ in block.properties}
+        if name not in names:
+            examples = "; give one of the game, such as open, facing, powered or half"
+            hint = _nearest(name, sorted(names)) or examples
+            raise UnnamesNameError(f"no block has the property {quoted(name)}{hint}")
+
     def _block(self, name: str) -> _Block:
         if name not in self._blocks:
-            raise UnknownNameError(
+            raise UnnamesNameError(
                 f"no block {quoted(name)} in Minecraft {self.version}{_nearest(name, self._blocks)}"
             )
         return self._blocks[name]

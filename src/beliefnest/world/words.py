@@ -121,11 +121,15 @@ def nearest_or_all(name: str, names: Sequence[str], listing: str = "there are") 
 
     Args:
         name: The unknown name.
-        names: All names that exist, at least one.
+        names: All names that exist.
         listing: Words before the list of all names.
     """
-    close = difflib.get_close_matches(name, names, n=1)
-    return f"; did you mean {quoted(close[0])}?" if close else f"; {listing} {', '.join(names)}"
+    close = difflib.get_close_matches(name, names)
+    if not close:
+        return f"; {listing} {', '.join(names) or 'none'}"
+    # Letters in another order are the likeliest slip.
+    nearest = min(close, key=lambda each: sorted(each) != sorted(name))
+    return f"; did you mean {quoted(nearest)}?"
 
 
 def titled(name: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.report import FIXED_SOLVERS, OF_BELIEFS
+from beliefnest.world.words import listed
 
 _EXACT = 1e-6
 _Excess = tuple[float, ...]
@@ -84,14 +85,15 @@ def _largest(kinds: Sequence[_Excess], counts: Sequence[int]) -> Any:
 def _impossible(
     made: Mapping[str, Sequence[ItemRecord]], dimensions: Sequence[tuple[str, int]]
 ) -> str:
-    why = []
+    every = [each for items in made.values() for each in items]
+    counts_by_name: dict[str, list[str]] = defaultdict(list)
     for name, order in dimensions:
-        every = [each for items in made.values() for each in items]
         answers = list(_answers(every, name, order))
         right = sum(answer == each.right for each, answer in answers)
         if abs(_excess(every, name, order)) > _EXACT:
-            why.append(f"{name} is right in {right} of {len(answers)} questions of order {order}")
+            counts_by_name[name].append(f"{right} of {len(answers)} questions of order {order}")
+    rates = (f"{name} is right in {listed(counts)}" for name, counts in counts_by_name.items())
     return (
         "no part of the variations has these shortcuts at chance: "
-        f"{'; '.join(why)}; vary what the answers depend on, or add conditions"
+        f"{'; '.join(rates)}; vary what the answers depend on, or add conditions"
     )
