@@ -147,7 +147,7 @@ def _range(form: dict[str, Any]) -> str:
     """Return the bounds of a number in words; empty if it has none."""
     words = {"minimum": "at least", "exclusiveMinimum": "above", "maximum": "at most"}
     bounds = " and ".join(f"{word} {form[key]:,}" for key, word in words.items() if key in form)
-    return f", {bounds}" if told else ""
+    return f", {bounds}" if bounds else ""
 
 
 _WORDS = {

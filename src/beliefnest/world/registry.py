@@ -278,11 +278,11 @@ class Registry:
         if name not in names:
             examples = "; give one of the game, such as open, facing, powered or half"
             hint = _nearest(name, sorted(names)) or examples
-            raise UnnamesNameError(f"no block has the property {quoted(name)}{hint}")
+            raise UnknownNameError(f"no block has the property {quoted(name)}{hint}")
 
     def _block(self, name: str) -> _Block:
         if name not in self._blocks:
-            raise UnnamesNameError(
+            raise UnknownNameError(
                 f"no block {quoted(name)} in Minecraft {self.version}{_nearest(name, self._blocks)}"
             )
         return self._blocks[name]
