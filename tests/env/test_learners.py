@@ -1,6 +1,7 @@
-"""Learners of stable-baselines3 take environments as they are, with masks."""
+"""Learners of stable-baselines3 take environments as they are, with masks; so do video recorders."""
 
 from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -46,3 +47,28 @@ def test_an_episode_that_ends_is_followed_by_the_next_one_in_the_same_step() -> 
                 for name, seen in info["terminal_observation"].items():
                     assert np.array_equal(seen, last[name][row])
             np.testing.assert_equal(observations, other.step(nothing)[0])
+
+
+@pytest.mark.extra("moviepy")
+def test_episodes_are_recorded_as_videos(tmp_path: Path) -> None:
+    from gymnasium.wrappers.vector import RecordVideo
+    from stable_baselines3.common.vec_env import VecVideoRecorder
+
+    given: dict[str, Any] = {"actions": "flat", "max_steps": 2, "render_mode": "rgb_array"}
+    nothing = np.zeros(2, np.int64)
+    copies = vector_env("joint-lift", 2, **given)
+    with closing(RecordVideo(copies, str(tmp_path / "a"), episode_trigger=bool)) as env:
+        env.reset(seed=0)
+        for _ in range(5):  # two steps and a new beginning, and once more
+            env.step(nothing)
+    learners = sb3_env("joint-lift", 2, **given)
+    with closing(VecVideoRecorder(learners, str(tmp_path / "b"), lambda step: step == 0, 2)) as env:
+        env.reset()
+        for _ in range(3):
+            env.step(nothing)
+    videos = sorted(tmp_path.glob("*/*"))
+    assert [each.name for each in videos] == [
+        "rl-video-episode-1.mp4",
+        "rl-video-step-0-to-step-2.mp4",
+    ]
+    assert all(b"ftyp" in each.read_bytes()[:16] for each in videos)
