@@ -1,4 +1,4 @@
-"""Learners of stable-baselines3 take environments as they are, with masks; so do video recorders."""
+"""Learners of stable-baselines3 take environments as they are, with masks; videos show them."""
 
 from contextlib import closing
 from pathlib import Path
