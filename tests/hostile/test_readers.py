@@ -79,7 +79,10 @@ FRAMES = [
     )
     for tick in range(1, 9)
 ]
-SUPPLEMENT = {"study.json": b'{"form": "beliefnest study 2", "cells": []}', "cells/a.json": b"{}"}
+SUPPLEMENT = {
+    "study.json": b'{"form": "beliefnest study 3", "kind": "scenarios", "cells": []}',
+    "cells/a.json": b"{}",
+}
 
 
 def zipped(files: dict[str, bytes]) -> bytes:

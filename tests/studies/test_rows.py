@@ -157,14 +157,20 @@ def test_a_list_that_is_none_is_told_by_its_own_key(
 
 
 def test_folders_of_earlier_versions_are_refused(result: bn.StudyResult, tmp_path: Path) -> None:
-    old = StudyFolder.open(tmp_path / "old")
+    old = StudyFolder.open(tmp_path / "old", result.kind)
     old.write_plan(result.plan)
     file = old.path / "study.json"
     content = json.loads(file.read_text(encoding="utf-8"))
-    file.write_text(json.dumps({**content, "form": "beliefnest study 1"}), encoding="utf-8")
+    file.write_text(json.dumps({**content, "form": "beliefnest study 2"}), encoding="utf-8")
     with pytest.raises(bn.InputError, match=r"another version of beliefnest.* in a new folder"):
         bn.StudyResult.read(old.path)
     assert run_command_line(["stats", str(old.path)]) == 2
+    file.write_text(json.dumps({**content, "kind": "plays"}), encoding="utf-8")
+    with pytest.raises(bn.InputError, match=r"study.json is damaged: .* cells of 'plays'; delete"):
+        bn.StudyResult.read(old.path)
+    file.write_text(json.dumps({**content, "kind": "episodes"}), encoding="utf-8")
+    with pytest.raises(bn.InputError, match=r"is damaged: .*delete it and run the study again"):
+        bn.StudyResult.read(old.path)
 
 
 NARRATED = """

@@ -21,6 +21,7 @@ from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.messages import Usage
 from beliefnest.plan.jobs import _engine
 from beliefnest.plan.spending import SharedBudget, spent_in
+from beliefnest.studies.kinds import SCENARIO_KIND
 from beliefnest.studies.study_folder import StudyFolder
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
@@ -124,12 +125,14 @@ def test_shards_merge(whole, tmp_path):
 
 
 def test_different_results_of_one_cell_do_not_merge(whole, tmp_path):
-    other = StudyFolder.open(tmp_path / "other")
-    name = sorted(StudyFolder.existing(whole[0]).names())[0]
-    content = StudyFolder.existing(whole[0]).cell(name)
+    own = StudyFolder.existing(whole[0])
+    other = StudyFolder.open(tmp_path / "other", own.kind)
+    other.write_plan(own.plan())
+    name = sorted(own.names())[0]
+    content = own.cell(name)
     other.write_cell(name, {**content, "ticks": 7})
     with pytest.raises(bn.InputError, match=f"different results of the cell {name}"):
-        StudyFolder.existing(whole[0]).take_over([tmp_path / "other"], [name])
+        own.take_over([tmp_path / "other"], [name])
 
 
 @pytest.mark.long
@@ -406,7 +409,7 @@ def test_merged_runs_and_times_come_along(tmp_path):
 
 
 def test_a_line_that_was_cut_off_spoils_no_other(tmp_path):
-    folder = StudyFolder.open(tmp_path / "out")
+    folder = StudyFolder.open(tmp_path / "out", SCENARIO_KIND)
     for file in (folder.ledger, folder.path / "seconds.jsonl"):
         file.write_text('{"cell": "on', "utf-8")
     SharedBudget.of(RunLimits(), folder.ledger).add(Usage(1, 10, 5, 0.5))

@@ -20,7 +20,6 @@ from beliefnest.scenarios.record_forms import checked_form, read_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.yaml_reading import templates_file
 from beliefnest.studies.run_result import REPORT, ResultForm, read_report
-from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.timeline.lock import writer_lock
 
 STORE = "run.bn"
@@ -221,11 +220,11 @@ def stores_in(run: Path) -> tuple[Path, ...]:
 
 def _below(folder: Path) -> tuple[Path, ...]:
     """Return the run files in a folder, including those of a study's cells."""
-    return tuple(sorted({*folder.rglob(STORE), *StudyFolder(folder).stores()}))
+    return tuple(sorted({*folder.rglob(STORE), *folder.glob("runs/*.bn")}))
 
 
 def _no_store(run: Path) -> InputError:
-    if StudyFolder(run).cells.is_dir():
+    if (run / "cells").is_dir():
         return InputError(
             f"{run} holds a study whose runs were not recorded; run it again with --record in a "
             f"new folder, to which you copy {run / _ANSWERS} so that no model is asked again"

@@ -62,7 +62,7 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
         if not supplement.is_dir():
             folder = unpack(supplement, Path(scratch, "unpacked"))
         result = opened(folder)
-        damaged = damaged_files(folder, result.folder.kind)
+        damaged = damaged_files(folder, result.folder.of)
         if damaged and trust:
             raise InputError(
                 f"{supplement} is not what was bundled: {damaged[0].text}"
@@ -94,7 +94,7 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
 def _code_of(result: StudyRecord) -> list[Code]:
     """Return the Python code that playing a study or run again runs."""
     folder = result.folder
-    if folder.kind == "study":
+    if folder.of == "study":
         return code_in_study(folder.path)
     document = read_document(str(folder.path / "scenario.yaml"))
     check_templates(document)

@@ -11,7 +11,7 @@ from beliefnest.episodes.telling import round_rows, told_episode
 from beliefnest.errors import InputError
 from beliefnest.frames.sources import FrameSource, RecordedCell, cells_of, study_of
 from beliefnest.nest.face.recorded import RecordedNest
-from beliefnest.studies.episode_rows import EPISODES
+from beliefnest.studies.kinds import EPISODE_KIND
 from beliefnest.studies.plainframe import Typed, plain_frame
 from beliefnest.studies.result import StudyResult
 from beliefnest.timeline.export_tables import entry_rows, prompt_row
@@ -65,7 +65,7 @@ def episodes_df(source: FrameSource | Iterable[Measures]) -> "pandas.DataFrame":
         rows = ({key: _plain(v) for key, v in each.row().items()} for each in source)
         return _frame(rows, ["task", "task_seed", "policies"])
     study = study_of(source)
-    if study is None or study.table is not EPISODES:
+    if study is None or study.kind is not EPISODE_KIND:
         raise InputError(f"there is no study of episodes at {source}")
     return _frame(iter(study.rows), ["cell"])
 

@@ -47,11 +47,11 @@ def bundled(result: StudyRecord, environment: Mapping[str, str], *, runs: bool) 
     """
     files = _files(result, runs=runs)
     check_secrets(files, _secrets(environment))
-    return with_manifest(files, result.folder.kind, result.plan["versions"])
+    return with_manifest(files, result.folder.of, result.plan["versions"])
 
 
 def _files(result: StudyRecord, *, runs: bool) -> dict[str, bytes]:
-    of_kind = _study_files if result.folder.kind == "study" else _run_files
+    of_kind = _study_files if result.folder.of == "study" else _run_files
     files = {**dict(of_kind(result, runs=runs)), **filter_packages()}
     files["rows.csv"] = csv_text(result.typed()).encode()
     facts = facts_of(result)
@@ -114,7 +114,7 @@ def _secrets(environment: Mapping[str, str]) -> Secrets:
 def _readme(result: StudyRecord, facts: RunFacts, files: Mapping[str, bytes]) -> str:
     version = facts.versions.get("beliefnest", "")
     pin = f"=={version}" if version else ""
-    kind = result.folder.kind
+    kind = result.folder.of
     filters = ""
     if any(name.startswith(f"{PACKAGES}/") for name in files):
         filters = (

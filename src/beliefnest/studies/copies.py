@@ -5,17 +5,19 @@ rows is counted. The column `copy_of` marks the others.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from beliefnest.plan.cells import digest
-from beliefnest.studies.study_folder import ResultFolder
+
+if TYPE_CHECKING:  # The folder knows its kind, and that its table.
+    from beliefnest.studies.study_folder import ResultFolder
 
 _OWN = ("key", "seed", "run")
 """Keys of a cell's file that identify the cell and are no part of its result."""
 
 
 def rows_with_copies(
-    folder: ResultFolder,
+    folder: "ResultFolder",
     plan: Mapping[str, Any],
     rows_of: Callable[[Mapping[str, Any], Mapping[str, Any]], Iterable[dict[str, Any]]],
 ) -> Iterator[dict[str, Any]]:

@@ -11,7 +11,9 @@ from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, checke
 from beliefnest.studies.inputs import InputIndex
 
 
-class _Failed(msgspec.Struct):
+class FailedCell(msgspec.Struct):
+    """Content of the file of a cell without a result."""
+
     error: str
 
 
@@ -19,7 +21,9 @@ class _StudyProbe(ProbeForm, kw_only=True):
     seconds: float
 
 
-class _Played(msgspec.Struct):
+class PlayedScenario(msgspec.Struct):
+    """Content of the file of a cell whose scenario was played."""
+
     error: None
     seed: int
     ticks: int
@@ -28,7 +32,9 @@ class _Played(msgspec.Struct):
     run: str
 
 
-class _Episode(msgspec.Struct):
+class PlayedEpisode(msgspec.Struct):
+    """Content of the file of a cell whose episode was played."""
+
     error: None
     seed: int
     why_not: str
@@ -88,7 +94,9 @@ class _Invalid(msgspec.Struct):
     why: str
 
 
-class _ScenariosPlan(msgspec.Struct):
+class ScenariosPlan(msgspec.Struct):
+    """Plan of a study of scenarios."""
+
     cells: list[_PlannedScenario]
     invalid: list[_Invalid]
     versions: dict[str, str]
@@ -119,7 +127,9 @@ class PeopleForm(msgspec.Struct):
     sessions: dict[str, _Sessions]
 
 
-class _EpisodesPlan(msgspec.Struct):
+class EpisodesPlan(msgspec.Struct):
+    """Plan of a study of episodes."""
+
     cells: list[_PlannedEpisode]
     invalid: list[_Invalid]
     tasks: Any
@@ -127,23 +137,17 @@ class _EpisodesPlan(msgspec.Struct):
     inputs: InputIndex
 
 
+class PlanKind(msgspec.Struct):
+    """Kind that any plan names."""
+
+    kind: str
+
+
 class SecondsForm(msgspec.Struct):
     """Line with the wall time of a cell."""
 
     cell: str
     seconds: float
-
-
-def cell_form(content: dict[str, Any]) -> type[Any]:
-    """Return the form that the content of a cell's file must have."""
-    if content.get("error") is not None:
-        return _Failed
-    return _Episode if "measures" in content else _Played
-
-
-def plan_form(content: dict[str, Any]) -> type[Any]:
-    """Return the form that a study's plan must have."""
-    return _EpisodesPlan if "tasks" in content else _ScenariosPlan
 
 
 def read_marked(file: Path, mark: str, form: type[Any], remedy: str) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from beliefnest.scenarios.judging import LOST, unanswered_words
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import DRAWS
 from beliefnest.studies.counting import Row
+from beliefnest.studies.kinds import CellKind
 from beliefnest.studies.participants.exclusions import excluded_words
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.world.words import counted
@@ -148,17 +149,17 @@ def facts_of(result: StudyRecord) -> RunFacts:
     Raises:
         InputError: A file of the folder is damaged.
     """
-    plan, rows, kind = result.plan, result.rows, result.folder.kind
+    plan, rows, of = result.plan, result.rows, result.folder.of
     names = [each.removeprefix("model:") for each in plan["models"]]
     names += [plan["claims_from"]] if plan.get("claims_from") else []
     tokens, cost, unpriced = usage_of(rows)
     judged = [row for row in rows if row["ok"] is not None and row["copy_of"] is None]
     return RunFacts(
-        kind=kind,
+        kind=of,
         versions=plan["versions"],
         world=plan["world"],
-        subjects=_subjects(plan),
-        factors=list(_factors(plan)),
+        subjects=_subjects(plan, result.kind),
+        factors=list(_factors(plan, result.kind)),
         seed=None if "seed" not in plan else f"seed {plan['seed']}",
         models=answered(names, result.folder.exchanges()),
         asking=_asking(plan, rows),
@@ -175,7 +176,7 @@ def facts_of(result: StudyRecord) -> RunFacts:
         not_answered=_not_answered(judged),
         rounds_not_answered=_rounds_not_answered(judged),
         asked_again=sum(row.get("asked_again") or 0 for row in judged),
-        intervals=_intervals(result.counted(result.groups)) if kind == "study" else (),
+        intervals=_intervals(result.counted(result.groups)) if of == "study" else (),
         people=list(_people(result)),
     )
 
@@ -233,18 +234,18 @@ _INTERVALS = {
 }
 
 
-def _subjects(plan: Mapping[str, Any]) -> str:
-    if "tasks" in plan:
-        names = sorted({cell["key"]["task"] for cell in plan["cells"]})
-        return f"episodes of the {_several('task', names)} ({_several('seed', plan['seeds'], '')})"
+def _subjects(plan: Mapping[str, Any], kind: CellKind) -> str:
     keys = [cell["key"] for cell in plan["cells"]]
-    names = list(dict.fromkeys(key["scenario"] for key in keys))
+    names = list(dict.fromkeys(key[kind.subject] for key in keys))
+    if "seeds" in plan:
+        subjects = f"{kind.name} of the {_several(kind.subject, sorted(names))}"
+        return f"{subjects} ({_several('seed', plan['seeds'], '')})"
     numbers = sorted({key["condition"] for key in keys if key["condition"] is not None})
-    subjects = f"the {_several('scenario', names)}"
+    subjects = f"the {_several(kind.subject, names)}"
     return f"{subjects} under {_several('condition', numbers, '')}" if numbers else subjects
 
 
-def _factors(plan: Mapping[str, Any]) -> Iterator[str]:
+def _factors(plan: Mapping[str, Any], kind: CellKind) -> Iterator[str]:
     variations = plan["variations"]
     if isinstance(variations, int):
         factor = f"{counted(variations, 'drawn variation')} of each scenario"
@@ -253,10 +254,8 @@ def _factors(plan: Mapping[str, Any]) -> Iterator[str]:
     elif variations:
         lists = [f"{_code(n)} ({counted(len(v), 'value')})" for n, v in variations.items()]
         yield f"all valid combinations of {_listed(lists)}"
-    if "tasks" in plan:
-        yield f"the {_several('policy', plan['players'], plural='policies')}"
-    else:
-        yield f"the {_several('model', plan['models'])}"
+    word, plural = kind.player
+    yield f"the {_several(word, plan[kind.players], plural=plural)}"
     if plan.get("templates"):
         yield f"the {_several('prompt template', plan['templates'])}"
     if plan["repeats"] > 1:

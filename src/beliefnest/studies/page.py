@@ -12,7 +12,8 @@ from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.counting import Pairs
-from beliefnest.studies.table import Table, variation_columns
+from beliefnest.studies.kinds import CellKind
+from beliefnest.studies.table import variation_columns
 from beliefnest.world.texts import visible
 from beliefnest.world.words import counted
 
@@ -31,8 +32,8 @@ class Counted(Protocol):
         """Return the rows of `frame` as plain values."""
 
     @property
-    def table(self) -> Table:
-        """Return the form of the table."""
+    def kind(self) -> CellKind:
+        """Return the kind of the cells."""
 
     @property
     def failed(self) -> Mapping[str, str]:
@@ -57,7 +58,8 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         result: Results of the study.
         by: Columns of the summary.
     """
-    plan, rows, table = result.plan, result.rows, result.table
+    plan, rows, kind = result.plan, result.rows, result.kind
+    table = kind.table
     groups = result.counted(by)
     people = len({row[PARTICIPANT] for row in rows if row.get(PARTICIPANT)})
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
@@ -68,9 +70,9 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         (files("beliefnest.studies") / "page.html.jinja").read_text(encoding="utf-8")
     )
     text = template.render(
-        kind="episodes" if "tasks" in plan else "scenarios",
-        subjects=plan.get("tasks") or plan["scenarios"],
-        players=_players(plan) + (f"; {counted(people, 'participant')}" if people else ""),
+        kind=kind.name,
+        subjects=plan[f"{kind.subject}s"],
+        players=_players(plan, kind) + (f"; {counted(people, 'participant')}" if people else ""),
         plan=plan,
         by=by,
         groups=groups,
@@ -92,9 +94,10 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
 
 def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:
     """Yield column, group and pairs of each comparison: overall, and in each task or scenario."""
-    whole = result.table.groups[0]
+    table = result.kind.table
+    whole = table.groups[0]
     several = len({row[whole] for row in result.rows}) > 1
-    for column in result.table.compared:
+    for column in table.compared:
         apart = result.apart(column)
         for by in (apart, (whole, *apart)) if several else (apart,):
             for values, pairs in result.paired(column, by):
@@ -104,10 +107,9 @@ def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:
                 yield column, ", ".join(words), pairs
 
 
-def _players(plan: Mapping[str, Any]) -> str:
-    if "tasks" in plan:
-        return f"policies {', '.join(plan['players'])}; {len(plan['seeds'])} seeds of each"
-    return f"models {', '.join(plan['models'])}; seed {plan['seed']}"
+def _players(plan: Mapping[str, Any], kind: CellKind) -> str:
+    seeds = f"{len(plan['seeds'])} seeds of each" if "seeds" in plan else f"seed {plan['seed']}"
+    return f"{kind.player[1]} {', '.join(plan[kind.players])}; {seeds}"
 
 
 def _figure(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> str:

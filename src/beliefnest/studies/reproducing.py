@@ -27,6 +27,7 @@ from beliefnest.studies.comparing import ERROR, PairedDifference, differing_cont
 from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
 from beliefnest.studies.inputs import InputIndex
+from beliefnest.studies.kinds import EPISODE_KIND, CellKind
 from beliefnest.studies.plainframe import csv_rows, read_csv_rows
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_record import StudyRecord
@@ -87,8 +88,8 @@ def reproduce_study(
     ]
     inputs = _Inputs.of(folder, plan)
     check_trust(inputs.code(), trust=trust)
-    cells = [inputs.cell(cell) for cell in ended]
-    place = StudyFolder.open(again)
+    cells = [inputs.cell(cell, recorded.kind) for cell in ended]
+    place = StudyFolder.open(again, recorded.kind)
     place.write_plan({**plan, "cells": ended})
     terms = Terms(
         answers=(folder / "answers").absolute(),
@@ -227,7 +228,7 @@ class _Inputs:
         )
         return cls(folder, index, documents, moved, policies)
 
-    def cell(self, planned: Mapping[str, Any]) -> Keyed:
+    def cell(self, planned: Mapping[str, Any], kind: CellKind) -> Keyed:
         """Return a cell to play, from its entry in the plan.
 
         Raises:
@@ -236,7 +237,7 @@ class _Inputs:
         key = dict(planned["key"])
         try:
             label = planned.get(LABEL, "")
-            made = self._episode(key) if "task" in key else self._probes(key, label)
+            made = self._episode(key) if kind is EPISODE_KIND else self._probes(key, label)
         except (BeliefNestError, KeyError, TypeError) as error:
             raise InputError(
                 f"{self.folder}: the cell {planned['name']} cannot be made from the inputs: {error}"

@@ -14,6 +14,7 @@ from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.plan.cells import variation_id
 from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, UsageForm
 from beliefnest.studies.forms import read_marked
+from beliefnest.studies.kinds import SCENARIO_KIND, CellKind
 
 REPORT = "run.json"
 FORM = "beliefnest run 1"
@@ -95,7 +96,8 @@ class ReportedRun:
         report: Content of `run.json`.
     """
 
-    kind: ClassVar[Literal["run"]] = "run"
+    of: ClassVar[Literal["run"]] = "run"
+    kind: ClassVar[CellKind] = SCENARIO_KIND
     path: Path
     report: Mapping[str, Any]
 

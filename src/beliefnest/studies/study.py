@@ -28,12 +28,12 @@ from beliefnest.studies.checking import StudyKeyError, is_amount, is_whole, seve
 from beliefnest.studies.design import Constraint, Design, template_named
 from beliefnest.studies.episode_cells import EpisodeCell, check_player, plan_episodes
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies
-from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
 from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.items.item_set import ItemSet
 from beliefnest.studies.items.making import made_items, with_balanced_items
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
+from beliefnest.studies.kinds import EPISODE_KIND, SCENARIO_KIND
 from beliefnest.studies.list_balance import with_balanced_lists
 from beliefnest.studies.participants.playing import OnItem, refuse_claims
 from beliefnest.studies.participants.running import (
@@ -47,7 +47,6 @@ from beliefnest.studies.plainframe import Typed, plain_frame
 from beliefnest.studies.power import VariationSource, power_rows
 from beliefnest.studies.power_sources import SIZES, assumed_sources
 from beliefnest.studies.result import StudyResult
-from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_keys import StudyKeys, design_of
 from beliefnest.studies.table import Table, variation_columns
@@ -207,7 +206,7 @@ class Study:
         # Document of the study's file; None: the study was made in Python.
         self._written = written
         scenarios = design.scenarios if isinstance(design, Design) else ()
-        self._table = PROBES if isinstance(design, Design) else EPISODES
+        self._kind = SCENARIO_KIND if isinstance(design, Design) else EPISODE_KIND
         self._documents: dict[str, Document] = {name: read_document(name) for name in scenarios}
         self._plan: Plan[Cell] | Plan[EpisodeCell] | None = None
 
@@ -241,13 +240,13 @@ class Study:
             for player in design.players:
                 with self._naming(player.place):
                     check_player(player)
-            return _told_apart(plan_episodes(design), self._table)
+            return _told_apart(plan_episodes(design), self._kind.table)
         plan = plan_cells(design, self._documents, on_variation)
         if design.design == "latin-square":
             plan = with_balanced_lists(plan)
         if design.balance:
             plan = with_balanced_items(plan, self._documents, design.balance, design.seed)
-        return _told_apart(plan, self._table)
+        return _told_apart(plan, self._kind.table)
 
     @contextmanager
     def _naming(self, path: KeyPath = ()) -> Iterator[None]:
@@ -268,7 +267,7 @@ class Study:
     def columns(self) -> tuple[str, ...]:
         """Return names of the table's columns, see `StudyResult.frame`; raise as `plan` does."""
         varied = variation_columns({"cells": [cell.plain() for cell in self.plan().cells]})
-        return tuple(self._table.kinds(varied))
+        return tuple(self._kind.table.kinds(varied))
 
     def run(
         self,
@@ -301,7 +300,7 @@ class Study:
             ModelError: The key of a model is missing.
             BodyError: A worker process ended unexpectedly; call again to continue.
         """
-        place = StudyFolder.open(folder)
+        place = StudyFolder.open(folder, self._kind)
         plan = self.plan()
         part = plan if shard is None else plan.shard(*checked_shard(shard))
         self._check_valid(plan)
@@ -411,7 +410,7 @@ class Study:
             pseudonyms=pseudonyms,
             exclude=None if exclude is None else Path(exclude),
         )
-        place = StudyFolder.open(folder)
+        place = StudyFolder.open(folder, self._kind)
         place.check_subjects(self._plan_json(self.plan()))
         with holding(place.path):
             if not place.has_plan:
@@ -486,15 +485,15 @@ class Study:
     ) -> list[tuple[str, VariationSource]]:
         """Return the groups of planned rows that `power` simulates; raise as `power` does."""
         plan = self._plan_json(self.plan())
-        rows = list(self._table.planned(plan))
+        rows = list(self._kind.table.planned(plan))
         varied = {name for name in self.columns if len({row[name] for row in rows}) > 1}
         if between is None:
-            between = next((name for name in self._table.compared if name in varied), None)
+            between = next((name for name in self._kind.table.compared if name in varied), None)
         elif between not in varied or between not in self.columns:
             raise InputError(
                 f"{quoted(between)} does not vary in this study; name a column that does"
             )
-        columns = (*self._table.groups, *self._table.further_groups)
+        columns = (*self._kind.table.groups, *self._kind.table.further_groups)
         by = [name for name in columns if name in varied]
         paired = None if plan.get("design") == "balanced" else between
         assumed = {"accuracy": accuracy, "difference": difference, "correlation": correlation}
@@ -572,7 +571,7 @@ class Study:
         """
         plan = self.plan()
         planned = {cell.key.name for cell in plan.cells}
-        place = StudyFolder.open(folder)
+        place = StudyFolder.open(folder, self._kind)
         place.check_subjects(self._plan_json(plan))
         with holding(place.path):
             return place.take_over([Path(other) for other in others], planned)

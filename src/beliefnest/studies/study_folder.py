@@ -15,11 +15,14 @@ from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.locking import is_lock
 from beliefnest.plan.spending import append_line
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
-from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form, read_marked
+from beliefnest.studies.forms import FailedCell, PeopleForm, PlanKind, SecondsForm, read_marked
+from beliefnest.studies.kinds import KINDS, CellKind
+from beliefnest.world.texts import quoted
 
 _PLAN = "study.json"
+_CELLS = "cells"
 _PEOPLE = "people.json"
-_FORM = "beliefnest study 2"
+_FORM = "beliefnest study 3"
 _PEOPLE_FORM = "beliefnest people 1"
 _READ_AGAIN = "delete it and read the answers of people again"
 _AGAIN = "delete it to run it again"
@@ -43,8 +46,12 @@ class ResultFolder(Protocol):
     """Folder with the results of the cells of a plan: of a study, or of a run."""
 
     @property
-    def kind(self) -> Literal["study", "run"]:
-        """Kind of results."""
+    def of(self) -> Literal["study", "run"]:
+        """Return what it is the folder of."""
+
+    @property
+    def kind(self) -> CellKind:
+        """Kind of the cells."""
 
     @property
     def path(self) -> Path:
@@ -74,19 +81,24 @@ class StudyFolder:
     `people.json` (entries of cells that participants answered), `seconds.jsonl` (wall times, which
     vary between runs), `answers/` (cached answers of models), `spent.jsonl` (usage of answers) and
     `runs/` (recorded runs).
+
+    Attributes:
+        path: The folder.
+        kind: Kind of the cells.
     """
 
-    kind: ClassVar[Literal["study"]] = "study"
+    of: ClassVar[Literal["study"]] = "study"
     path: Path
+    kind: CellKind
 
     @staticmethod
-    def open(path: str | Path) -> "StudyFolder":
+    def open(path: str | Path, kind: CellKind) -> "StudyFolder":
         """Make the folder, or open it to continue its study.
 
         Raises:
             InputError: The folder cannot be made, or holds something else.
         """
-        folder = StudyFolder(Path(path))
+        folder = StudyFolder(Path(path), kind)
         try:
             folder.path.mkdir(parents=True, exist_ok=True)
             # A study that repeats another one may begin with a folder of cached answers alone.
@@ -94,7 +106,7 @@ class StudyFolder:
                 each != folder.answers and not is_lock(each) for each in folder.path.iterdir()
             )
             strange = strange and not (folder.path / _PLAN).is_file()
-            if strange and not (folder.path / "cells").is_dir():
+            if strange and not folder.cells.is_dir():
                 raise InputError(f"{path} is not empty and holds no study; name another folder")
             folder.cells.mkdir(exist_ok=True)
         except OSError as error:
@@ -103,23 +115,23 @@ class StudyFolder:
 
     @staticmethod
     def existing(path: str | Path) -> "StudyFolder":
-        """Return the folder of an existing study; raise InputError if there is none."""
-        folder = StudyFolder(Path(path))
-        if not folder.cells.is_dir():
-            run = (
-                "; it holds a run of `beliefnest run`"
-                if (folder.path / "run.json").exists()
-                else ""
-            )
+        """Return the folder of an existing study.
+
+        Raises:
+            InputError: There is none, its plan cannot be read, or another version wrote it.
+        """
+        folder = Path(path)
+        if not (folder / _CELLS).is_dir():
+            run = "; it holds a run of `beliefnest run`" if (folder / "run.json").exists() else ""
             raise InputError(
                 f"there is no study at {path}{run}; give a folder of `beliefnest study`"
             )
-        return folder
+        return StudyFolder(folder, _kind_in(folder / _PLAN))
 
     @property
     def cells(self) -> Path:
         """Folder with one file for each finished cell."""
-        return self.path / "cells"
+        return self.path / _CELLS
 
     @property
     def answers(self) -> Path:
@@ -153,7 +165,8 @@ class StudyFolder:
         if not file.is_file():
             return None
         content = read_json(file, _AGAIN)
-        checked_form(content, cell_form(content), file, _AGAIN)
+        form = self.kind.cell if content.get("error") is None else FailedCell
+        checked_form(content, form, file, _AGAIN)
         return content
 
     def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
@@ -180,7 +193,7 @@ class StudyFolder:
 
     def write_plan(self, plan: Mapping[str, Any]) -> None:
         """Write the plan."""
-        replace_file(self.path / _PLAN, _json({"form": _FORM, **plan}))
+        replace_file(self.path / _PLAN, _json({**plan, "form": _FORM, "kind": self.kind.name}))
 
     @property
     def has_plan(self) -> bool:
@@ -188,11 +201,19 @@ class StudyFolder:
         return (self.path / _PLAN).is_file()
 
     def plan(self) -> dict[str, Any]:
-        """Return the latest plan; raise InputError if it is missing or damaged."""
+        """Return the latest plan.
+
+        Raises:
+            InputError: It is missing or damaged, or one of cells of another kind.
+        """
         file = self.path / _PLAN
-        plan = read_marked(file, _FORM, dict[str, Any], _PLAN_AGAIN)
-        checked_form(plan, plan_form(plan), file, _PLAN_AGAIN)
-        return plan
+        there = _kind_in(file)
+        if there is not self.kind:
+            raise InputError(
+                f"{self.path} holds a study of {there.name}, and this one is of {self.kind.name}; "
+                "name another folder"
+            )
+        return read_marked(file, _FORM, there.plan, _PLAN_AGAIN)
 
     def people(self) -> list[dict[str, Any]]:
         """Return the entries of all cells that participants answered.
@@ -256,8 +277,8 @@ class StudyFolder:
         Raises:
             InputError: The folder holds another study, or is damaged.
         """
-        there = _subjects(self.plan()) if self.has_plan else set()
-        own = _subjects(plan)
+        there = self._subjects(self.plan()) if self.has_plan else set()
+        own = self._subjects(plan)
         if there and own and there.isdisjoint(own):
             raise InputError(
                 f"{self.path} holds a study of {', '.join(sorted(there))}, and this one is of "
@@ -314,16 +335,22 @@ class StudyFolder:
             self._write_entries(people.values(), sessions)
         return len(new)
 
+    def _subjects(self, plan: Mapping[str, Any]) -> set[str]:
+        """Return the names of the scenarios or tasks in a plan."""
+        return {str(cell["key"][self.kind.subject]) for cell in plan["cells"]}
+
     @property
     def _times(self) -> Path:
         """File with the wall time of each cell, one line each."""
         return self.path / "seconds.jsonl"
 
 
-def _subjects(plan: Mapping[str, Any]) -> set[str]:
-    """Return the names of the scenarios and tasks in a plan."""
-    keys = (cell["key"] for cell in plan["cells"])
-    return {str(key.get("scenario") or key["task"]) for key in keys}
+def _kind_in(file: Path) -> CellKind:
+    """Return the kind of cells of a plan; raise InputError if the plan names none of ours."""
+    name = read_marked(file, _FORM, PlanKind, _PLAN_AGAIN)["kind"]
+    if name not in KINDS:
+        raise InputError(f"{file} is damaged: there are no cells of {quoted(name)}; {_PLAN_AGAIN}")
+    return KINDS[name]
 
 
 def _json(content: Mapping[str, Any]) -> str:

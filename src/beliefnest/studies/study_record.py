@@ -9,14 +9,13 @@ from typing import Any, Self
 from beliefnest.errors import InputError
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.counting import Pairs, count_rows, paired_rows
-from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.guessing import mean_chance
+from beliefnest.studies.kinds import CellKind
 from beliefnest.studies.plainframe import Typed
 from beliefnest.studies.positions import choices_of, count_positions
 from beliefnest.studies.power import VariationSource
 from beliefnest.studies.power_sources import recorded_sources
 from beliefnest.studies.row_filter import RowFilter
-from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import ResultFolder, StudyFolder
 from beliefnest.studies.table import Table, variation_columns
 
@@ -60,10 +59,15 @@ class StudyRecord:
         plan = self.folder.plan()
         return {**plan, "cells": [*plan["cells"], *self.folder.people()]}
 
-    @cached_property
+    @property
+    def kind(self) -> CellKind:
+        """Return the kind of the cells."""
+        return self.folder.kind
+
+    @property
     def table(self) -> Table:
-        """Form of `frame`: a table of episodes, or of probes of scenarios."""
-        return EPISODES if "tasks" in self._plan else PROBES
+        """Return the form of `frame`."""
+        return self.kind.table
 
     @cached_property
     def rows(self) -> list[dict[str, Any]]:

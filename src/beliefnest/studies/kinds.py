@@ -1,0 +1,53 @@
+"""Kinds of cells of studies; a study's plan names its kind, and nothing else tells it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.studies.episode_rows import EPISODES
+from beliefnest.studies.forms import EpisodesPlan, PlayedEpisode, PlayedScenario, ScenariosPlan
+from beliefnest.studies.rows import PROBES
+from beliefnest.studies.table import Table
+
+
+@dataclass(frozen=True, slots=True)
+class CellKind:
+    """Kind of cells.
+
+    Attributes:
+        name: Name in the plan: what is played.
+        plan: Form of plans.
+        cell: Form of the files of cells with a result.
+        table: Form of the table.
+        subject: Part of a cell's key that names what is played. Plans list all under its plural.
+        players: Key of plans that lists who is asked or plays.
+        player: Word for one of them, and its plural.
+    """
+
+    name: str
+    plan: type[Any]
+    cell: type[Any]
+    table: Table
+    subject: str
+    players: str
+    player: tuple[str, str]
+
+
+SCENARIO_KIND = CellKind(
+    name="scenarios",
+    plan=ScenariosPlan,
+    cell=PlayedScenario,
+    table=PROBES,
+    subject="scenario",
+    players="models",
+    player=("model", "models"),
+)
+EPISODE_KIND = CellKind(
+    name="episodes",
+    plan=EpisodesPlan,
+    cell=PlayedEpisode,
+    table=EPISODES,
+    subject="task",
+    players="players",
+    player=("policy", "policies"),
+)
+KINDS = {each.name: each for each in (SCENARIO_KIND, EPISODE_KIND)}
