@@ -12,9 +12,9 @@ from typing import Any, Literal
 
 from rich.text import Text
 
-from beliefnest.belief.kernels_ahead import kernels_ahead
 from beliefnest.cli.console import Printed, report_text, stdout
 from beliefnest.cli.folder import RunFolder, kept_scenario_file
+from beliefnest.cli.kernels_ahead import kernels_ahead
 from beliefnest.cli.matrix import score_runs, score_table
 from beliefnest.cli.options import RunOptions
 from beliefnest.cli.report import OutcomeRow, outcome_table, report_json

@@ -24,6 +24,7 @@ from numba.core import caching
 from numba.core.runtime.nrt import rtsys
 
 from beliefnest.locking import LockHeldError, ProcessLock
+from beliefnest.perception.instead import INSTEAD
 from beliefnest.perception.sealed_files import DamagedFileError, SealedFiles
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -147,6 +148,11 @@ def _shared(kernel: Any) -> Callable[..., Any]:
                 stacklevel=2,
             )
             return compile_it(*args)
+        find = INSTEAD.get(None)
+        if find is not None and not cache.holds(args[0], kernel.targetctx):
+            found = find(kernel, args[0])
+            if found is not None:
+                return found
         try:
             return compile_it(*args)
         finally:
@@ -265,6 +271,13 @@ class _Cache(caching.FunctionCache):
         processor = target_context.codegen().magic_tuple()
         with suppress(*_UNREADABLE):
             return any(key[1] == processor for key in self._cache_file._load_index())
+        return False
+
+    def holds(self, sig: object, target_context: Any) -> bool:
+        """Return True if machine code for types of arguments, and for this processor, is stored."""
+        key = self._index_key(sig, target_context.codegen())
+        with suppress(*_UNREADABLE):
+            return key in self._cache_file._load_index()
         return False
 
     def load_overload(self, sig: object, target_context: Any) -> object:

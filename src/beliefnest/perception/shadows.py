@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, Reaches
-from beliefnest.perception.compiling import allocating, compiled, inlined, inlined_allocating
+from beliefnest.perception.compiling import allocating, inlined, inlined_allocating, inner
 from beliefnest.perception.rays import GridCell, RayScene, Vector, at, turned
 
 N = TypeVar("N", int, float)
@@ -171,7 +171,7 @@ def _gap(eye: Vector, low: Vector, high: Vector) -> tuple[int, float]:
     return axis, near
 
 
-@compiled
+@inner
 def _cast_box(
     shadows: Shadows,
     sizes: GridCell,
