@@ -150,9 +150,9 @@ def _shared(kernel: Any) -> Callable[..., Any]:
             return compile_it(*args)
         find = INSTEAD.get(None)
         if find is not None and not cache.holds(args[0], kernel.targetctx):
-            found = find(kernel, args[0])
-            if found is not None:
-                return found
+            stand_in = find(kernel, args[0])
+            if stand_in is not None:
+                return stand_in
         try:
             return compile_it(*args)
         finally:
