@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import pytest
+from tests.pictures.measuring import texts
 from tests.shared_worlds import WORLDS
 
 import beliefnest as bn
@@ -296,3 +297,32 @@ def test_claims_about_halves_that_nobody_knows_mean_what_was_said() -> None:
     world.say("ann", "It is there.", claims=[bn.Claim.located("emerald", left)])
     assert dict(nests[1]["/bob"].state.containers[right].items) == {"emerald": 1}
     assert "emerald is in (8, 1, 2)" in str(nests[1]["/bob"].explain(container=right))
+
+
+@pytest.mark.parametrize("half", HALVES)
+def test_either_half_names_the_chest_in_claims_doubts_and_plots(half: tuple[int, int, int]) -> None:
+    other = (9, 1, 2)
+    floor = {(x, 0, z): "stone" for x in range(12) for z in range(6)}
+    double = {
+        place: f"chest[facing=south,type={n}]" for place, n in ((LEFT, "left"), (RIGHT, "right"))
+    }
+    agents = {"ann": (3.5, 1, 4.5), "bob": (6.5, 1, 4.5)}
+    contents = {RIGHT: {"emerald": 1}, other: {}}
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (11, 3, 5)), {**floor, **double}, agents, containers=contents
+    )
+    nest = bn.Nest(world, bn.Perception(testimony="accept"))
+    doubt = {
+        name: [
+            {"container": half, "items": {"emerald": 1} if name == "long" else {}},
+            {"container": other, "items": {} if name == "long" else {"emerald": 1}},
+        ]
+        for name in ("long", "single")
+    }
+    world.say("ann", "It is there.", claims=[bn.Claim.located("emerald", half)])
+    assert nest["/"].credence("bob", doubt) == {"long": 1.0, "single": 0.0}
+    ((_, _, claim),) = nest["/bob"].heard_claims
+    assert claim.cell == RIGHT
+    for asked in HALVES:
+        drawing = nest.plot_beliefs(asked, paths=["/bob"]).drawing()
+        assert any("emerald is in" in text for text in texts(drawing))

@@ -130,7 +130,7 @@ def _begun() -> Table:
 def _cells(claim: MadeClaim, scenario: Scenario) -> list[str]:
     to = "" if claim.addressee is None else f" to {claim.addressee}"
     kind = "a lie" if claim.lie else "false" if claim.false else ""
-    row = (str(claim.tick), f"{claim.speaker or 'a sign'}{to}", _words(claim.claim, scenario), kind)
+    row = (str(claim.tick), f"{claim.speaker or 'a sign'}{to}", _words(claim.about, scenario), kind)
     return [printable(cell) for cell in row]
 
 

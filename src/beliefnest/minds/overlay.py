@@ -6,7 +6,7 @@ going in or out, an agent moves in sight. The element is then the same in all al
 
 import hashlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from beliefnest.belief.grounds import AgentBelief, ContainerBelief, PerceivedEvent
@@ -42,6 +42,7 @@ class Overlay:
         box: The part of space.
         agents: Names of all agents.
         agent: The modelled agent.
+        whole: Function that returns the position of the container to which a block belongs.
 
     Raises:
         InputError: An alternative moves the modelled agent, or an unknown one.
@@ -55,6 +56,7 @@ class Overlay:
         box: Box,
         agents: Sequence[str],
         agent: str,
+        whole: Callable[[Position], Position],
     ) -> None:
         self._registry, self._box, self._agent = registry, box, agent
         self._names = [each.name for each in alternatives]
@@ -72,13 +74,13 @@ class Overlay:
             at: [registry.state_id(text) for text in texts] for at, texts in self._texts.items()
         }
         self._contents: dict[Position, list[Items]] = {
-            at: [each.containers[at] for each in alternatives] for at in first.containers
+            whole(at): [each.containers[at] for each in alternatives] for at in first.containers
         }
         self._feet: dict[str, list[Point]] = {
             name: [each.agents[name] for each in alternatives] for name in first.agents
         }
         self._held: _Held | None = None
-        self._claimed = tuple(first.containers)
+        self._claimed = tuple(self._contents)
 
     @property
     def containers(self) -> tuple[Position, ...]:

@@ -76,10 +76,7 @@ class CourseReading:
         if agent not in recording.agents:
             raise PathError(f"no agent {agent!r}; there are {', '.join(recording.agents)}")
         if self._overlay is None:
-            context = recording.context
-            self._overlay = Overlay(
-                question.alternatives, context.registry, context.box, recording.agents, agent
-            )
+            self._overlay = self._unchanged()
         moment = recording.moment(question.path, until)
         for stretch in recording.stretches(moment):
             key = stretch.timeline
@@ -136,16 +133,21 @@ class CourseReading:
             The claims that the agent took up in that tick before the edit, as in `EvidenceMoment`.
         """
         claims = tuple(mask for moment in self.moments for mask in moment.claims)
-        question, context = self.question, self.recording.context
-        self._overlay = Overlay(
-            question.alternatives,
-            context.registry,
-            context.box,
-            self.recording.agents,
-            question.agent,
-        )
+        self._overlay = self._unchanged()
         self.moments, self._agrees = [], -1
         return claims
+
+    def _unchanged(self) -> Overlay:
+        """Return the doubted elements as the alternatives give them."""
+        recording, question = self.recording, self.question
+        return Overlay(
+            question.alternatives,
+            recording.context.registry,
+            recording.context.box,
+            recording.agents,
+            question.agent,
+            recording.state(()).container_at,
+        )
 
     @property
     def _agent_path(self) -> BeliefPath:
@@ -178,12 +180,12 @@ class CourseReading:
         assert forest is not None
         if isinstance(entry, Edit) or path not in forest:
             return
-        node = forest.node(path)
+        node, whole = forest.node(path), NodeView(forest, path).container_at
         for row, event in enumerate(entry.events):
             for index, claim in enumerate(claims_of(event)):
                 verdicts = forest.verdicts.get((row, index))
                 if verdicts is not None and verdicts[node].believed:
-                    yield claim
+                    yield claim.of_whole(whole)
 
     def _take(self, tick: int, claims: Sequence[Claim], before: int) -> None:
         """Read the state of the node after a tick."""

@@ -71,6 +71,17 @@ class MadeClaim:
         others = [name for name in self._recording.agents if name != self.speaker]
         return tuple(name for name in others if self._was_perceived((*self._key.path, name)))
 
+    @property
+    def about(self) -> Claim:
+        """The claim; if it names half of a double chest, the one about the whole chest."""
+
+        def whole(place: Position) -> Position:
+            with self._recording.turn:
+                history, key = self._recording.history, self._key
+                return history.state(key, key.path, self._entry + 1).container_at(place)
+
+        return self.claim.of_whole(whole)
+
     @cached_property
     def false(self) -> bool:
         """True if the world in which it was made contradicted the claim at its tick."""

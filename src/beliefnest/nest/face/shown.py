@@ -186,11 +186,14 @@ class ShownSimulator(ABC):
     @property
     @in_turn
     def heard_claims(self) -> list[tuple[int, str, Claim]]:
-        """Claims that the simulator perceived, oldest first: tick, speaker, claim."""
-        events = self._recording.state(self._path, self._tick).perceived
+        """Claims that the simulator perceived, oldest first: tick, speaker, claim.
+
+        A claim that names half of a chest known as double is about the whole one.
+        """
+        state = self._recording.state(self._path, self._tick)
         return [
-            (event.tick, event.actor, claim)
-            for event in events
+            (event.tick, event.actor, claim.of_whole(state.container_at))
+            for event in state.perceived
             if event.actor is not None
             for claim in claims_from_plain(event.detail.get("claims", []))
         ]

@@ -130,8 +130,8 @@ def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
     names = _names(recording)
     acts = []
     for made in claims_made(recording, (), end):
-        if matter.is_claimed(made.claim):
-            where = names.get(made.claim.cell)
+        if matter.is_claimed(made.about):
+            where = names.get(made.about.cell)
             said = str(made.claim) if where is None else made.claim.about(where)
             kind = " (a lie)" if made.lie else " (false)" if made.false else ""
             acts.append(NotedAct(made.tick, f"{made.speaker or 'a sign'}: {said}{kind}"))
@@ -151,7 +151,7 @@ def _heard(
     return tuple(
         NotedClaim(made.heard_at(text), made.taken_up(text))
         for made in claims_made(recording, own, end)
-        if matter.is_claimed(made.claim) and made.is_heard(text) and made.condition(text) != "4"
+        if matter.is_claimed(made.about) and made.is_heard(text) and made.condition(text) != "4"
     )
 
 
