@@ -25,6 +25,11 @@ class Sense(IntEnum):
     ACTOR = 3
     """Sight of the actor."""
 
+    @property
+    def is_announced(self) -> bool:
+        """True if programs are told of its events; they see others, in the state of the world."""
+        return self not in (Sense.NONE, Sense.PLACE, Sense.ACTOR)
+
 
 class EventDetail(msgspec.Struct, forbid_unknown_fields=True):
     """Details of events: the part that witnesses perceive.

@@ -1,6 +1,6 @@
 """Events in words: one table for prompts, explanations, plots, pages and reports."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -265,3 +265,32 @@ def _told(event: _Event) -> dict[str, Any]:
 
 def _plain(kind: EventKind) -> str:
     return kind.value.replace("_", " ")
+
+
+Announcement = tuple[str, ...]
+"""Name and values of an event of a bot."""
+
+
+def announced(events: Iterable[_Event], me: str) -> tuple[Announcement, ...]:
+    """Return the events of its bot by which an agent's program learns what the agent perceived.
+
+    Speech has those of Mineflayer; an event of another kind has its name, its actor and its text.
+    """
+    return tuple(
+        announcement
+        for event in events
+        if event.kind.traits.sense.is_announced
+        for announcement in _announced(event, me)
+    )
+
+
+def _announced(event: _Event, me: str) -> Iterator[Announcement]:
+    actor, text, to = event.actor or "", str(event.detail.get("text", "")), event.detail.get("to")
+    if event.kind is not EventKind.CHAT:
+        yield (event.kind.value, actor, text)
+    elif to is None:
+        yield from (("chat", actor, text), ("messagestr", f"<{actor}> {text}"))
+    elif to == me:
+        yield from (("whisper", actor, text), ("messagestr", f"{actor} whispers to you: {text}"))
+    else:
+        yield ("messagestr", f"You whisper to {to}: {text}")

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from beliefnest.world.event_kinds import EventKind
+from beliefnest.world.event_words import Announcement
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, DroppedItem, Event, Placements, Point, Position
@@ -216,14 +217,14 @@ class Sensed:
         blocks: Block state ids of the box, -1 is unknown.
         agents: The other agents that its own perceives now; its own state it knows by its body.
         items: Dropped items by number, at their last seen positions.
-        heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
+        announced: Events of its bot about what it perceived, in the latest tick, but did not see.
         signs: Known texts of signs, by position; all other signs are blank.
     """
 
     blocks: Terrain
     agents: Mapping[str, AgentState]
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
-    heard: tuple[tuple[str, str, str | None], ...] = ()
+    announced: tuple[Announcement, ...] = ()
     signs: Mapping[Position, str] = field(default_factory=dict)
 
 

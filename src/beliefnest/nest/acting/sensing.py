@@ -6,7 +6,7 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.embodiable import chest_places, with_chests_at
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.world.event_kinds import EventKind
+from beliefnest.world.event_words import announced
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState
@@ -29,7 +29,7 @@ class Sensing:
         key: The timeline on which the agent acts.
         agent: Name of the agent.
         entries: Function that returns the number of entries of that timeline by now.
-        since: Number of entries after which the first call reports utterances; None: it reports
+        since: Number of entries after which the first call announces events; None: it announces
             none.
     """
 
@@ -93,11 +93,6 @@ class Sensing:
             if each.current and each.position is not None and name != self._agent
         }
         before, self._events = self._events, seen.count_of_events
-        said = () if before is None else seen.events_since(before)
-        heard = tuple(
-            (event.actor or "", str(event.detail["text"]), event.detail.get("to"))
-            for event in said
-            if event.kind is EventKind.CHAT
-        )
-
-        return Sensed(self._blocks(seen, entries), agents, dict(seen.items), heard, seen.texts)
+        events = () if before is None else seen.events_since(before)
+        news = announced(events, self._agent)
+        return Sensed(self._blocks(seen, entries), agents, dict(seen.items), news, seen.texts)

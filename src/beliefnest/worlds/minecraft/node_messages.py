@@ -242,7 +242,7 @@ def percepts_message(sensed: Sensed, low: Position) -> dict[str, Any]:
         "agents": {name: pose_message(agent) for name, agent in sensed.agents.items()},
         "items": items_message(sensed.items),
         **signs_message(sensed.signs),
-        **({"heard": sensed.heard} if sensed.heard else {}),
+        **({"announced": sensed.announced} if sensed.announced else {}),
     }
 
 
@@ -257,7 +257,7 @@ def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, 
         "blocks": terrain_changes(before.blocks, after.blocks, low),
         "agents": dict(sorted(agents.items())),
         "items": dict(sorted(items.items(), key=lambda item: int(item[0]))),
-        "heard": after.heard,
+        "announced": after.announced,
     }
     changes = {name: part for name, part in parts.items() if part}
     if before.signs != after.signs:

@@ -13,6 +13,7 @@ from typing import Any
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
+from beliefnest.world.event_words import Announcement
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.texts import MOST_UTTERANCES, quoted
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position, block_at, feet_in
@@ -59,7 +60,7 @@ class Hand:
         speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
         mouth: Utterances that it is about to make, in order.
         uttered: Ticks of its latest utterances.
-        heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
+        news: Events of its bot about what it perceived, in the latest tick, but did not see.
         stride: Function that returns the number of ticks, from the current one on, in which nothing
             but this agent acts and nobody watches. Steps of so many ticks are taken at once, and
             the walk then yields the number of ticks to skip.
@@ -74,7 +75,7 @@ class Hand:
     speech_ticks: int = 0
     mouth: list[object] = field(default_factory=list)
     uttered: list[int] = field(default_factory=list)
-    heard: list[tuple[str, str, str | None]] = field(default_factory=list)
+    news: list[Announcement] = field(default_factory=list)
     stride: Callable[[], int] = _one_tick
 
     def reach(self, place: Position, *, beside: bool = False) -> InReach:

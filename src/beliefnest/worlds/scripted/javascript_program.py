@@ -7,6 +7,7 @@ import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
+from beliefnest.world.event_words import Announcement
 from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotBody, BotReads, OpenWindow, state_of
 from beliefnest.worlds.scripted.desk import Desk, DeskFacts, Prepared, TooIntricateError
@@ -15,8 +16,6 @@ from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.sfc32 import Sfc32
 
-_HEARD = ("chat", "whisper", "messagestr")
-"""Events to which a program can listen here."""
 _UNDEFINED = {"$": "u"}
 _NOTHING: Mapping[str, Any] = {"waitForChat": None}
 """Results, for programs, of skills that return nothing, where that is not `undefined`."""
@@ -131,19 +130,10 @@ class JavaScriptProgram:
         """True if the program listens for speech."""
         return bool(self._listeners) and not self.ended
 
-    def hear(self, heard: Sequence[tuple[str, str, str | None]]) -> None:
-        """Report what its agent heard: speaker, text, and the recipient of a whisper."""
-        for speaker, words, to in heard:
-            me = self._reads.name
-            if to is None:
-                self._tell("chat", speaker, words)
-            elif to == me:
-                self._tell("whisper", speaker, words)
-            line = f"<{speaker}> {words}"
-            if to is not None:
-                about = f"{speaker} whispers to you" if to == me else f"You whisper to {to}"
-                line = f"{about}: {words}"
-            self._tell("messagestr", line)
+    def hear(self, news: Sequence[Announcement]) -> None:
+        """Call its listeners to the events of its bot."""
+        for name, *values in news:
+            self._tell(name, *values)
 
     def settle(self, number: int, value: object) -> None:
         """Give a call its result, and run until the program waits again."""
@@ -368,7 +358,7 @@ class JavaScriptProgram:
         return self._promise("openContainer", admission, "bot.openContainer")
 
     def _listen(self, event: str, wire: Any, once: bool) -> Any:
-        if event not in _HEARD:
+        if event not in parts().announced:
             is_event = event in parts().events
             if is_event:
                 raise RefusedError(f"the scripted world has no event {event}; {_ELSEWHERE}")

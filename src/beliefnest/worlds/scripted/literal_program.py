@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from beliefnest.world.event_words import Announcement
 from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotReads
 from beliefnest.worlds.scripted.desk import Desk, DeskFacts
@@ -132,7 +133,7 @@ class LiteralProgram:
     def end(self) -> None:
         """Do nothing: the program holds nothing."""
 
-    def hear(self, heard: Sequence[tuple[str, str, str | None]]) -> None:
+    def hear(self, news: Sequence[Announcement]) -> None:
         """Do nothing: the program does not listen."""
 
     def settle(self, number: int, value: object) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.errors import BeliefNestError
-from beliefnest.world.event_kinds import EventKind
+from beliefnest.world.event_words import Announcement, announced
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, Box, Event, Point
 from beliefnest.worlds.protocol import Aim, Fault, ProgramResult, RunRules, Sensed, SenseSource
@@ -40,7 +40,7 @@ class _Run:
     doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
     memory: Memory = field(default_factory=Memory)
     read: Sensed | None = None
-    missed: tuple[tuple[str, str, str | None], ...] = ()
+    missed: tuple[Announcement, ...] = ()
     aims: list[Aim] = field(default_factory=list)
     stopped: list[tuple[int, str]] = field(default_factory=list)
     end_tick: int | None = None
@@ -172,8 +172,10 @@ class RunningPrograms:
         world, rules, grounds, latest = self._world, self._rules, self._grounds, self._latest
 
         def all_of_it() -> Sensed:
-            others, heard = _others(world.agents, agent), _heard_by(agent, latest)
-            return Sensed(world.terrain, others, heard=heard, signs=world.signs)
+            news = announced(_said_to(agent, latest), agent)
+            return Sensed(
+                world.terrain, _others(world.agents, agent), announced=news, signs=world.signs
+            )
 
         def ground() -> Ground:
             return grounds.of(world.box, world.terrain)
@@ -191,7 +193,7 @@ class RunningPrograms:
         )
         program = self._program(BotReads(world, agent, sense), code, f"{seed} {agent}")
         past = rules.past.get(agent)
-        missed = () if past is None else sense().heard
+        missed = () if past is None else sense().announced
         run = _Run(
             hand, program, sense, missed=missed, memory=Memory(() if past is None else past.calls)
         )
@@ -221,11 +223,9 @@ def _known(box: Box, sense: SenseSource, grounds: Grounds) -> Callable[[], Groun
     return lambda: grounds.of(box, sense().blocks)
 
 
-def _heard_by(agent: str, events: Sequence[Event]) -> tuple[tuple[str, str, str | None], ...]:
-    """Return the speech of a tick that an agent heard: all of it but whispers to others."""
-    said = (event for event in events if event.kind is EventKind.CHAT)
-    words = [(e.actor or "", str(e.detail["text"]), e.detail.get("to")) for e in said]
-    return tuple(each for each in words if each[2] is None or agent in (each[0], each[2]))
+def _said_to(agent: str, events: Sequence[Event]) -> list[Event]:
+    """Return the events of a tick but for whispers between others."""
+    return [each for each in events if agent in (each.actor, each.detail.get("to", agent))]
 
 
 def _listens(run: _Run) -> bool:
@@ -234,18 +234,18 @@ def _listens(run: _Run) -> bool:
 
 
 def _hear(run: _Run) -> None:
-    """Report the speech of the tick that has ended to an agent and its program."""
-    run.hand.heard.clear()
+    """Announce the events of the tick that has ended to an agent and its program."""
+    run.hand.news.clear()
     if not _listens(run) or run.end_tick is not None:
         return
     sensed = run.sense()
-    heard = run.missed if sensed is run.read else (*run.missed, *sensed.heard)
+    news = run.missed if sensed is run.read else (*run.missed, *sensed.announced)
     run.read, run.missed = sensed, ()
-    if not heard:
+    if not news:
         return
-    run.hand.heard.extend(heard)
+    run.hand.news.extend(news)
     if run.program.listens and not run.program.ended:
-        run.program.hear(heard)
+        run.program.hear(news)
         _take_calls(run)
 
 

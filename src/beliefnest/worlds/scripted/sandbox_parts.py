@@ -127,6 +127,7 @@ class Parts(msgspec.Struct, frozen=True):
     scope: tuple[str, ...]
     kinds: dict[str, ObjectKind]
     events: tuple[str, ...]
+    announced: tuple[str, ...]
     limits: Limits
     meter: Meter
     cost: Cost

@@ -218,9 +218,9 @@ def _wait_ticks(hand: Hand, ticks: Any) -> Doing:
 def _wait_for_chat(hand: Hand, ticks: Any = 100) -> Doing:
     for _ in range(math.ceil(number_in("ticks", ticks))):
         yield 0
-        for speaker, text, to in hand.heard:
-            if speaker != hand.name:
-                return {"speaker": speaker, "text": text, "whispered": to is not None}
+        for name, *values in hand.news:
+            if name in ("chat", "whisper") and values[0] != hand.name:
+                return {"speaker": values[0], "text": values[1], "whispered": name == "whisper"}
     return None
 
 

@@ -14,7 +14,7 @@ const { buildCircuits } = require('./circuits')
 const { INITIAL_PAGES, interpreterBytes } = require('./src/sandbox/interpreter')
 const { DEFAULTS, namesOf } = require('./src/sandbox')
 const { METER } = require('./src/sandbox/engine')
-const { events } = require('./src/sandbox/policy/events')
+const { announced, events } = require('./src/sandbox/policy/events')
 const { kindNames } = require('./src/sandbox/policy/kinds')
 const { LIMITS, REQUEST_COST } = require('./src/sandbox/session')
 const { interpreterNames } = require('./bundling/interpreter')
@@ -59,6 +59,7 @@ async function sandbox (desk) {
     scope: scope.parameters,
     kinds: kindNames,
     events: Object.keys(events),
+    announced: Object.keys(announced),
     limits: { ...DEFAULTS, ...LIMITS },
     meter: { ...METER, initialPages: INITIAL_PAGES },
     cost: REQUEST_COST,

@@ -11,13 +11,13 @@ const { KnownWorld } = require('./knownWorld')
 const { Others } = require('./others')
 const { Walker } = require('./walker')
 
+const ANNOUNCED = Object.keys(require('../sandbox/policy/events').announced)
+
 /** Events about the agent's own body or acts, which the bot emits. All other events come from percepts. */
 const OF_THE_BODY = new Set([
   'health', 'breath', 'death', 'spawn', 'respawn', 'rain', 'time', 'move', 'forcedMove', 'physicsTick', 'physicTick', 'sleep', 'wake',
   'experience', 'diggingCompleted', 'diggingAborted', 'windowOpen', 'windowClose', 'heldItemChanged', 'usedFirework'
 ])
-
-const HEARING = new Set(['chat', 'whisper', 'messagestr'])
 
 class View {
   /**
@@ -42,8 +42,9 @@ class View {
     bot.on('playerCollect', this.onCollect)
     this.onSignOpen = ({ position }) => this.emitter.emit('signOpen', this.known.getBlock(position))
     bot.on('signOpen', this.onSignOpen)
-    // Speech that the agent heard before the program could listen: since the interruption, if the program is resumed.
-    this.backlog = this.learn(changes).filter(([event]) => HEARING.has(event))
+    this.learn(changes)
+    // Events before the program could listen: since the interruption, if the program is resumed.
+    this.backlog = changes.announced ?? []
   }
 
   /** Return the bot object for the program. */
@@ -103,8 +104,8 @@ class View {
 
   /** Apply PERCEPTS, the changes since the last ones; null if nothing has changed. */
   update (changes) {
-    // Keep speech in the backlog until the program has a listener.
-    const listens = [...HEARING].some(event => this.emitter.listenerCount(event) > 0)
+    // Keep the backlog until the program has a listener.
+    const listens = ANNOUNCED.some(event => this.emitter.listenerCount(event) > 0)
     const before = listens ? this.backlog.splice(0) : []
     const told = [...before, ...(changes === null ? [] : this.learn(changes))]
     for (const [event, ...values] of told) this.emitter.emit(event, ...values)
@@ -113,7 +114,7 @@ class View {
   }
 
   /** Apply changes. Return the events that announce them, each a name with values. @returns {Array[]} */
-  learn ({ blocks = [], signs = null, agents = {}, items = {}, heard = [] }) {
+  learn ({ blocks = [], signs = null, agents = {}, items = {}, announced = [] }) {
     const told = []
     if (signs !== null) this.known.readSigns(signs)
     for (const [x, y, z, state] of blocks) {
@@ -126,13 +127,7 @@ class View {
     for (const [number, item] of Object.entries(items)) told.push(...this.others.find(Number(number), item))
     // Only if the agent sees the collector and has seen the item lie there.
     told.push(...taken.filter(pair => pair.every(Boolean)).map(pair => ['playerCollect', ...pair]))
-    return [...told, ...heard.flatMap(utterance => this.hearing(utterance))]
-  }
-
-  hearing ([speaker, text, to]) {
-    if (to === null) return [['chat', speaker, text], ['messagestr', `<${speaker}> ${text}`]]
-    if (to !== this.body.username) return [['messagestr', `You whisper to ${to}: ${text}`]]
-    return [['whisper', speaker, text], ['messagestr', `${speaker} whispers to you: ${text}`]]
+    return [...told, ...announced]
   }
 
   /** Release the bot and return it. @returns {object} */

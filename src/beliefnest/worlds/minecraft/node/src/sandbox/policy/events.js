@@ -8,10 +8,15 @@ const window = t.live('window')
 const player = t.record({ username: t.text, entity: t.maybe(entity) })
 const position = t.maybe(t.vector)
 
-const events = {
+/** Events about what an agent perceives otherwise than by sight (`announced` in `world/event_words.py`). */
+const announced = {
   chat: [t.text, t.text],
   whisper: [t.text, t.text],
-  messagestr: [t.text],
+  messagestr: [t.text]
+}
+
+const events = {
+  ...announced,
   health: [],
   breath: [],
   death: [],
@@ -57,4 +62,4 @@ const events = {
   path_update: [t.record({ status: t.text, cost: t.number, visitedNodes: t.number })]
 }
 
-module.exports = { events }
+module.exports = { announced, events }
