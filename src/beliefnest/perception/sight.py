@@ -14,7 +14,7 @@ angle are inclusive, with a tolerance of 1e-9. The kernels are compiled on first
 
 import functools
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -230,28 +230,6 @@ class Geometry(SightLines):
         """Return the shape codes of cells with some indices (n, 3), in the box or its margin."""
         codes: CodeGrid = self.codes[tuple(cells.T + 1)]
         return codes
-
-    def with_blocks(self, changes: Mapping[Position, int]) -> "Geometry":
-        """Return the geometry with other block states (-1: unknown) at some positions of the grid.
-
-        Raises:
-            InputError: A position lies outside the grid.
-            UnknownNameError: A value is neither a block state id nor -1.
-        """
-        from beliefnest.perception.eyes import change_code
-
-        codes = self.codes.copy()
-        states = self.sight.registry.states
-        for position, state in changes.items():
-            cell = tuple(p - o for p, o in zip(position, self.origin, strict=True))
-            if not all(0 <= c < size - 2 for c, size in zip(cell, codes.shape, strict=True)):
-                raise InputError(f"position {position} lies outside the grid at {self.origin}")
-            _check_states(state, state, states)
-            i, j, k = cell
-            code = int(self.sight.state_codes[state])
-            place = (i + 1, j + 1, k + 1)
-            change_code(codes.reshape(-1), self._scene.sizes, self.sight.reaches, place, code)
-        return Geometry(self.sight, self.origin, codes)
 
     def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
         """Return a mask of the visible blocks of the grid: bool (nx, ny, nz).

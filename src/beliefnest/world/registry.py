@@ -49,7 +49,6 @@ class _BlockFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     properties: list[tuple[str, list[str]]]
     shapes: list[int]
     solid: bool
-    lets_light_through: bool
 
 
 class _RegistryFile(Bundled, frozen=True, forbid_unknown_fields=True):

@@ -56,7 +56,6 @@ class Meter(msgspec.Struct, frozen=True, rename="camel"):
     """Constants of the meter in the interpreter.
 
     Attributes:
-        stack_bytes: Estimated bytes of its stack.
         unmetered: Fuel of code that is not a program's.
         grace: Fuel kept back for loops that cannot be stopped politely.
         crossing_stack_bytes: Estimated bytes of the host's frames.
@@ -67,7 +66,6 @@ class Meter(msgspec.Struct, frozen=True, rename="camel"):
         initial_pages: Pages of 64 KiB of a new memory.
     """
 
-    stack_bytes: int
     unmetered: int
     grace: int
     crossing_stack_bytes: int
@@ -92,20 +90,6 @@ class Cost(msgspec.Struct, frozen=True):
     answered: int
 
 
-class ObjectKind(msgspec.Struct, frozen=True):
-    """Members of a kind of game object, in Minecraft.
-
-    Attributes:
-        gets: Properties.
-        sets: Properties that can be set.
-        calls: Methods.
-    """
-
-    gets: tuple[str, ...]
-    sets: tuple[str, ...]
-    calls: tuple[str, ...]
-
-
 class Parts(msgspec.Struct, frozen=True):
     """All of it.
 
@@ -113,8 +97,8 @@ class Parts(msgspec.Struct, frozen=True):
         exports: Letters of the interpreter's functions, by name.
         imports: Letters of what it imports, by what that does.
         scope: Names in scope of a program, in order.
-        kinds: Kinds of game objects, by name.
         events: Events of the bot, in Minecraft.
+        announced: Those of them that tell what its agent perceived otherwise than by sight.
         limits: Limits of a program.
         meter: Constants of the meter.
         cost: Fuel for a request.
@@ -125,7 +109,6 @@ class Parts(msgspec.Struct, frozen=True):
     exports: dict[str, str]
     imports: dict[str, str]
     scope: tuple[str, ...]
-    kinds: dict[str, ObjectKind]
     events: tuple[str, ...]
     announced: tuple[str, ...]
     limits: Limits

@@ -15,7 +15,6 @@ const { INITIAL_PAGES, interpreterBytes } = require('./src/sandbox/interpreter')
 const { DEFAULTS, namesOf } = require('./src/sandbox')
 const { METER } = require('./src/sandbox/engine')
 const { announced, events } = require('./src/sandbox/policy/events')
-const { kindNames } = require('./src/sandbox/policy/kinds')
 const { LIMITS, REQUEST_COST } = require('./src/sandbox/session')
 const { interpreterNames } = require('./bundling/interpreter')
 const { bundledDesk } = require('./bundling/desk')
@@ -57,7 +56,6 @@ async function sandbox (desk) {
   return {
     ...await interpreterNames(),
     scope: scope.parameters,
-    kinds: kindNames,
     events: Object.keys(events),
     announced: Object.keys(announced),
     limits: { ...DEFAULTS, ...LIMITS },

@@ -59,8 +59,7 @@ function buildRegistry (version) {
     default_state: block.defaultState,
     properties: block.states.map((p) => [p.name, propertyValues(p)]),
     shapes: blockShapes(block, data.blockCollisionShapes, table),
-    solid: block.boundingBox === 'block',
-    lets_light_through: block.transparent
+    solid: block.boundingBox === 'block'
   }))
   return {
     format: FORMAT,
