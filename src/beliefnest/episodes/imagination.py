@@ -128,7 +128,7 @@ class Imagination:
         self._grounds = grounds
         self._ground: tuple[Terrain, Ground] | None = None
         self._geometry: tuple[Terrain, SightLines] | None = None
-        self._switches: tuple[Terrain, Sequence[Position]] | None = None
+        self._switches: tuple[Terrain, dict[Position, dict[Position, int] | None]] | None = None
         self._news = news
         self._sight = sight
         self._unseen, self._feet = start
@@ -201,9 +201,21 @@ class Imagination:
     @property
     def switches(self) -> Sequence[Position]:
         """Positions of levers, buttons and pressure plates, in order."""
+        return tuple(self._moved())
+
+    def moved_by(self, switch: Position) -> Mapping[Position, int]:
+        """Return the new states of blocks that the use of a switch would move."""
+        moved = self._moved()
+        of_switch = moved[switch]
+        if of_switch is None:
+            of_switch = moved[switch] = self.world.moved_by(switch)
+        return of_switch
+
+    def _moved(self) -> dict[Position, dict[Position, int] | None]:
+        """Return what each switch would move, if computed; forks share it."""
         blocks = self.world.terrain
         if self._switches is None or self._switches[0] is not blocks:
-            self._switches = (blocks, switches_in(self.world.box, blocks))
+            self._switches = (blocks, dict.fromkeys(switches_in(self.world.box, blocks)))
         return self._switches[1]
 
     def seen_by(self, agent: str) -> Mapping[str, AgentState]:

@@ -219,7 +219,7 @@ def _switches(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[
     for place in mind.switches:
         if not mind.may_reach(agent, place):
             continue
-        moved = world.moved_by(place)
+        moved = mind.moved_by(place)
         if any(is_door(Registry.load().name(state)) for state in moved.values()) or (
             wanted & moved.keys()
         ):
