@@ -7,14 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beliefnest.env import sb3_env, vector_env
+from beliefnest.env import parallel_env, sb3_env, vector_env
 
 pytest.importorskip("stable_baselines3", reason="it is large, and tested at night")
 pytestmark = pytest.mark.extra("stable_baselines3", "sb3_contrib")
 
 
+TASKS = ("joint-lift", "help-find", "kitchen")
+
+
 @pytest.mark.parametrize("processes", [1, 2])
-@pytest.mark.parametrize("task", ["joint-lift", "help-find", "kitchen"])
+@pytest.mark.parametrize("task", TASKS)
 def test_ppo_and_maskable_ppo_train(task: str, processes: int) -> None:
     from sb3_contrib import MaskablePPO
     from stable_baselines3 import PPO
@@ -23,6 +26,18 @@ def test_ppo_and_maskable_ppo_train(task: str, processes: int) -> None:
         with closing(sb3_env(task, 2, processes=processes, max_steps=2)) as env:
             learner = kind("MultiInputPolicy", env, n_steps=4, batch_size=8, n_epochs=1, seed=3)
             assert learner.learn(8).num_timesteps == 8
+
+
+@pytest.mark.extra("supersuit")
+@pytest.mark.parametrize("task", TASKS)
+def test_ppo_trains_with_copies_of_supersuit(task: str) -> None:
+    import supersuit
+    from stable_baselines3 import PPO
+
+    one = supersuit.pettingzoo_env_to_vec_env_v1(parallel_env(task, actions="flat", max_steps=2))
+    with closing(supersuit.concat_vec_envs_v1(one, 2, base_class="stable_baselines3")) as env:
+        learner = PPO("MultiInputPolicy", env, n_steps=4, batch_size=8, n_epochs=1)
+        assert learner.learn(8).num_timesteps == 8
 
 
 def test_an_episode_that_ends_is_followed_by_the_next_one_in_the_same_step() -> None:
