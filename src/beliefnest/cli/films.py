@@ -1,25 +1,34 @@
 """`beliefnest suite food-trucks`: films acted out and judged, beside the judgments of people."""
 
 import math
-import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from rich.table import Table
 
-from beliefnest.cli.console import Printed, print_report, progress_on, result_table
+from beliefnest.cli.console import Printed, print_report, result_table
 from beliefnest.cli.options import SuiteOptions
-from beliefnest.errors import InputError, MissingExtraError
-from beliefnest.locking import holding
+from beliefnest.cli.playing import playing, status_of, write_tables
+from beliefnest.errors import InputError
 from beliefnest.pictures.scatter import Dot, ScatterPanel, ScatterRow, scatter_figure
-from beliefnest.studies.plainframe import Typed, write_csv, write_parquet
 from beliefnest.suites import FILMS
 from beliefnest.suites.films.agreement import PUBLISHED, JudgesAgreement, agreement, interval
-from beliefnest.suites.films.film import ABOUT, Film, FilmParameters, JudgedPart, grid_for
+from beliefnest.suites.films.cells import FILM_KIND, film_cells
+from beliefnest.suites.films.film import (
+    ABOUT,
+    WHOLE,
+    Film,
+    FilmParameters,
+    FilmRow,
+    JudgedPart,
+    grid_for,
+)
 from beliefnest.suites.films.film_files import read_films
-from beliefnest.suites.films.film_inference import LESIONS, Judgment, Lesion, judge
+from beliefnest.suites.films.film_inference import LESIONS, Lesion
+from beliefnest.suites.playing import play_suite
 
 _MODELS: tuple[Lesion | None, ...] = (None, *LESIONS)
 _WORDS: Mapping[Lesion | None, str] = {
@@ -27,18 +36,15 @@ _WORDS: Mapping[Lesion | None, str] = {
     "true_belief": "true belief",
     "no_cost": "no cost",
 }
-_SINGULAR: Mapping[JudgedPart, str] = {
-    "desires": "desire",
-    "beliefs": "belief",
-    "locations": "location",
-}
 _AXES: Mapping[JudgedPart, tuple[str, str]] = {
     "desires": ("model: expected utility", "people: rating"),
     "beliefs": ("model: expected credence", "people: credence"),
     "locations": ("model: probability", "people: probability"),
 }
-_REPORTS = 10
-"""Lines of progress where there is no terminal."""
+
+
+JudgedFilms = Mapping[Lesion | None, Sequence[FilmRow]]
+"""Rows of the films, by the part that the model lacks."""
 
 
 def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
@@ -57,47 +63,27 @@ def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
     films = films[: options.limit]
     if not films:
         raise InputError(f"{options.path} holds none of the films asked for")
-    folder = _folder(options.out)
-    with holding(folder):
-        judged = _judge_all(films, parameters)
-        report = _report(options, judged, parameters)
-        report["files"] = _write(folder, options, judged)
-    print_report(report, _parts(judged, report), as_json=options.json)
-    return 0
-
-
-def _judge_all(
-    films: Sequence[Film], parameters: FilmParameters
-) -> dict[Lesion | None, list[Judgment]]:
-    """Judge all films with each model, and show the progress."""
-    judged: dict[Lesion | None, list[Judgment]] = {}
-    step = max(1, len(films) // _REPORTS)
-    with progress_on(FILMS) as on_progress:
-        for lesion in _MODELS:
-            judged[lesion] = []
-            for number, film in enumerate(films):
-                if number % step == 0:
-                    on_progress(f"{_WORDS[lesion]}, film {film.name}", number, len(films))
-                judged[lesion].append(judge(film, parameters, lesion))
-        on_progress("all films judged", len(films), len(films))
-    return judged
-
-
-def _folder(out: Path | None) -> Path:
-    folder = out or Path("suites", f"{FILMS}-{datetime.now().astimezone():%Y%m%d-%H%M%S}")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"the folder {folder} cannot be made: {error.strerror}") from None
-    return folder
+    folder = options.out or Path("suites", f"{FILMS}-{datetime.now():%Y%m%d-%H%M%S}")
+    cells = film_cells(FILMS, films, parameters)
+    about = {"suites": [FILMS], "data": str(options.path), "world": "scripted"}
+    with playing(FILMS, folder) as (place, on_progress):
+        result = play_suite(place, FILM_KIND, cells, about, (), on_progress)
+    complete = [row for row in result.rows if row["model"] is not None]
+    rows = msgspec.convert(complete, list[FilmRow])
+    judged = {each: [row for row in rows if row.variant == _key(each)] for each in _MODELS}
+    write_tables(result)
+    report = _report(options, films, judged, parameters)
+    report["files"] = [str(folder / "rows.csv"), *_write(folder, options, judged)]
+    print_report(report, _parts(films, judged, report), as_json=options.json)
+    return status_of(result)
 
 
 def _report(
     options: SuiteOptions,
-    judged: Mapping[Lesion | None, Sequence[Judgment]],
+    films: Sequence[Film],
+    judged: JudgedFilms,
     parameters: FilmParameters,
 ) -> dict[str, Any]:
-    films = [judgment.film for judgment in judged[None]]
     groups = list(dict.fromkeys(film.group for film in films if film.group))
     return {
         "suite": FILMS,
@@ -112,7 +98,7 @@ def _report(
             group: {
                 "films": sum(film.scored for film in films if film.group == group),
                 "correlations": _correlations(
-                    [each for each in judged[None] if each.film.group == group], None, options.seed
+                    [row for row in judged[None] if row.group == group], None, options.seed
                 ),
             }
             for group in groups
@@ -123,25 +109,21 @@ def _report(
             if (grid := grid_for(film, parameters)) != parameters.grid
         },
         "impossible": {
-            judgment.film.name: judgment.impossible
-            for judgment in judged[None]
-            if judgment.impossible is not None
+            row.film: row.impossible for row in judged[None] if row.impossible is not None
         },
-        "judgments": [_judgment(judgment) for judgment in judged[None]],
+        "judgments": [_judgment(film, judged[None]) for film in films],
     }
 
 
 def _key(lesion: Lesion | None) -> str:
-    return lesion or "model"
+    return lesion or WHOLE
 
 
-def _correlations(
-    judgments: Sequence[Judgment], lesion: Lesion | None, seed: int
-) -> dict[str, Any]:
+def _correlations(rows: Sequence[FilmRow], lesion: Lesion | None, seed: int) -> dict[str, Any]:
     """Return the coefficients of all that people judged, with intervals."""
     correlations: dict[str, Any] = {}
     for about in ABOUT:
-        pairs = agreement(judgments, about)
+        pairs = agreement(rows, about)
         if not len(pairs.model):
             continue
         correlations[about] = {
@@ -153,21 +135,19 @@ def _correlations(
     return correlations
 
 
-def _judgment(judgment: Judgment) -> dict[str, Any]:
-    film = judgment.film
+def _judgment(film: Film, rows: Sequence[FilmRow]) -> dict[str, Any]:
+    own = {about: _means(film, rows, about) for about in ABOUT}
     return {
         "film": film.name,
         "group": film.group or None,
         "scored": film.scored,
-        "model": judgment.model,
+        "model": {about: means for about, means in own.items() if means},
         "people": film.people,
     }
 
 
-def _write(
-    folder: Path, options: SuiteOptions, judged: Mapping[Lesion | None, Sequence[Judgment]]
-) -> list[str]:
-    """Write the figure, if people judged, and the tables; without pyarrow, no Parquet file."""
+def _write(folder: Path, options: SuiteOptions, judged: JudgedFilms) -> list[str]:
+    """Write the figure, if people judged, and return its files."""
     written = []
     rows = _scatter_rows(judged, options.seed)
     if rows:
@@ -176,51 +156,10 @@ def _write(
             file = folder / f"scatter.{ending}"
             figure.save(file)
             written.append(str(file))
-    columns = _columns(judged)
-    try:
-        for name, write in (("judgments.csv", write_csv), ("judgments.parquet", write_parquet)):
-            write(columns, folder / name)
-            written.append(str(folder / name))
-    except MissingExtraError as error:
-        sys.stderr.write(f"no judgments.parquet: {error}\n")
-    except OSError as error:
-        raise InputError(f"{folder} cannot be written: {error.strerror or error}") from None
     return written
 
 
-def _columns(judged: Mapping[Lesion | None, Sequence[Judgment]]) -> dict[str, Typed]:
-    """Return a row for each judgment of each model, with that of people beside it."""
-    rows: list[tuple[object, ...]] = []
-    for lesion, judgments in judged.items():
-        for judgment in judgments:
-            film = judgment.film
-            for about, means in judgment.model.items():
-                people, errors = film.people.get(about, {}), film.errors.get(about, {})
-                rows += [
-                    (
-                        *(film.name, film.group or None, film.scored, _key(lesion)),
-                        *(_SINGULAR[about], name, value, people.get(name), errors.get(name)),
-                        judgment.impossible,
-                    )
-                    for name, value in means.items()
-                ]
-    kinds = {
-        **dict.fromkeys(("film", "group"), "string"),
-        "scored": "bool",
-        **dict.fromkeys(("variant", "about", "name"), "string"),
-        **dict.fromkeys(("model", "people", "people_se"), "float64"),
-        "impossible": "string",
-    }
-    columns = zip(*rows, strict=True)
-    return {
-        name: Typed(values, kind)
-        for (name, kind), values in zip(kinds.items(), columns, strict=True)
-    }
-
-
-def _scatter_rows(
-    judged: Mapping[Lesion | None, Sequence[Judgment]], seed: int
-) -> list[ScatterRow]:
+def _scatter_rows(judged: JudgedFilms, seed: int) -> list[ScatterRow]:
     rows = []
     for about in ABOUT:
         pairs = {lesion: agreement(judged[lesion], about) for lesion in _MODELS}
@@ -252,7 +191,7 @@ def _coefficient(pairs: JudgesAgreement, seed: int) -> str:
 
 
 def _parts(
-    judged: Mapping[Lesion | None, Sequence[Judgment]], report: Mapping[str, Any]
+    films: Sequence[Film], judged: JudgedFilms, report: Mapping[str, Any]
 ) -> Iterator[Printed]:
     title = f"{FILMS}: {report['films']} films, {report['scored']} of them scored"
     if report["correlations"]["model"]:
@@ -268,9 +207,9 @@ def _parts(
             yield table
     else:
         yield f"{title}; people judged none of them"
-    alone = [each for each in judged[None] if not each.film.people]
+    alone = [film for film in films if not film.people]
     if alone:
-        yield _alone(alone)
+        yield _alone(alone, judged[None])
     for name, step in report["impossible"].items():
         yield f"film {name} is left out: {step}"
     for name, grid in report["coarser_grids"].items():
@@ -297,23 +236,23 @@ def _add(table: Table, name: str, pairs: Mapping[str, Any], *, published: bool =
         table.add_row(*cells)
 
 
-def _alone(judgments: Sequence[Judgment]) -> Table:
+def _alone(films: Sequence[Film], rows: Sequence[FilmRow]) -> Table:
     """Return the model's judgments of films that people did not judge."""
-    shown: list[JudgedPart] = [a for a in ABOUT if any(a in each.model for each in judgments)]
+    shown = [a for a in ABOUT if any(_means(film, rows, a) for film in films)]
     table = result_table("film", *shown, title="films without judgments of people")
-    for each in judgments:
-        cells = [_means(each, about) for about in shown]
-        table.add_row(_film_text(each.film), *cells)
+    for film in films:
+        name = film.name if film.scored else f"{film.name} (not scored)"
+        table.add_row(name, *(_means_text(_means(film, rows, about), about) for about in shown))
     return table
 
 
-def _film_text(film: Film) -> str:
-    return film.name if film.scored else f"{film.name} (not scored)"
+def _means(film: Film, rows: Sequence[FilmRow], about: JudgedPart) -> dict[str, float]:
+    own = (row for row in rows if (row.film, row.about) == (film.name, about))
+    return {row.name: row.model for row in own}
 
 
-def _means(judgment: Judgment, about: JudgedPart) -> str:
+def _means_text(means: Mapping[str, float], about: JudgedPart) -> str:
     digits = 1 if about == "desires" else 3
-    means = judgment.model.get(about, {})
     return ", ".join(f"{name} {value:.{digits}f}" for name, value in means.items())
 
 

@@ -329,9 +329,10 @@ class SuiteOptions:
     strict: Annotated[
         bool, typer.Option("--strict", help="Stop at the first line that cannot be read.")
     ] = False
-    out: Annotated[Path | None, typer.Option(help="Folder for the figure and tables of films.")] = (
-        None
-    )
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder of results; an interrupted or enlarged suite continues in it."),
+    ] = None
     json: Json = False
 
     @property

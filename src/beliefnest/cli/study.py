@@ -8,20 +8,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from rich.table import Table
 
 from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import StudyOptions
+from beliefnest.cli.playing import playing, status_of, write_tables
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.streams import noted_warnings
 from beliefnest.cli.terminal_text import printable
-from beliefnest.errors import InputError, ModelError, UnknownNameError
+from beliefnest.errors import InputError
 from beliefnest.plan.jobs import StudyProgress
-from beliefnest.scenarios.judging import OUTCOMES, unanswered_words, without_result_words
-from beliefnest.studies.allocation import PARTICIPANT
+from beliefnest.scenarios.judging import OUTCOMES, unanswered_words
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.result import StudyResult
@@ -83,22 +82,16 @@ def run_study(options: StudyOptions) -> int:
     by = options.by or result.groups
     write_files(result, by)
     print_report(_report(result, by), _parts(result, by, warned), as_json=options.json)
-    return _status(result)
+    return status_of(result)
 
 
 @contextmanager
 def played(
     study: Study, title: str, jobs: int, folder: Path | None = None
 ) -> Iterator[StudyResult]:
-    """Play a study and show the progress; without a folder, its results end with the block."""
-    with TemporaryDirectory() as scratch, progress_on(title) as on_progress:
-        step = max(1, len(study.plan().cells) // _LINES)
-
-        def told(progress: StudyProgress) -> None:
-            if progress.done % step == 0 or progress.done == progress.total:
-                on_progress("playing", progress.done, progress.total)
-
-        yield study.run(folder or Path(scratch), jobs, on_progress=told)
+    """Play a study, see `playing`."""
+    with playing(title, folder) as (place, on_progress):
+        yield study.run(place, jobs, on_progress=on_progress)
 
 
 def _shard(text: str | None) -> tuple[int, int] | None:
@@ -120,11 +113,8 @@ def _progress_text(progress: StudyProgress) -> str:
 
 
 def write_files(result: StudyResult, by: Sequence[str]) -> None:
-    """Write the tables and the page into the study's folder; without pyarrow, no Parquet file."""
-    try:
-        result.write_tables()
-    except UnknownNameError as error:
-        sys.stderr.write(f"no rows.parquet: {error}\n")
+    """Write the tables and the page into the study's folder."""
+    write_tables(result)
     result.write_page(result.folder.path / "study.html", by)
 
 
@@ -202,16 +192,3 @@ def _table(by: Sequence[str], groups: Sequence[Mapping[str, Any]]) -> Table:
             cost_text(group["cost"]),
         )
     return table
-
-
-def _status(result: StudyResult) -> int:
-    rows = [row for row in result.rows if row.get(PARTICIPANT) is None]
-    failed = result.failed
-    if failed:
-        counting = {row["cell"] for row in rows if row["ok"] is False} & failed.keys()
-        summary = without_result_words(len(failed), len(result.plan["cells"]), len(counting))
-        raise ModelError(
-            f"{summary}; run the same command to try them again; the first: "
-            f"{next(iter(failed.values()))}"
-        )
-    return 0 if all(row["ok"] is not False for row in rows) else 1

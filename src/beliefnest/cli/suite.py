@@ -1,35 +1,25 @@
 """`beliefnest suite`: answer all questions of a file from nests, and print the scores."""
 
-import os
 import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from beliefnest.cli.console import Printed, print_report, progress_on, result_table
+import msgspec
+
+from beliefnest.cli.console import Printed, print_report, result_table
 from beliefnest.cli.films import run_films
 from beliefnest.cli.options import SuiteOptions
+from beliefnest.cli.playing import playing, status_of, write_tables
 from beliefnest.errors import InputError
 from beliefnest.suites import FILMS, story_reader
+from beliefnest.suites.playing import play_suite
+from beliefnest.suites.stories.cells import STORY_KIND, story_cells
 from beliefnest.suites.stories.data import ReadStories, StoryItems, Unread
-from beliefnest.suites.stories.suite import (
-    JudgedAnswer,
-    Score,
-    answer_story,
-    score,
-    scores_by_order,
-)
+from beliefnest.suites.stories.suite import JudgedAnswer, Score, score, scores_by_order
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
 
-if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
-    from beliefnest.llm.claim_reader import ClaimsFromModel
-
 _ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
-
-_REPORTS = 20
-"""Number of progress lines if stderr is not a terminal."""
 
 
 def run_suite(options: SuiteOptions) -> int:
@@ -49,8 +39,6 @@ def run_suite(options: SuiteOptions) -> int:
     if read is None:
         _check_films(options)
         return run_films(options, rows)
-    if options.out is not None:
-        raise InputError(f"--out is for films; the suite {options.name} writes no files")
     read_stories = read(options.path, rows)
     if not isinstance(read_stories, ReadStories):
         raise InputError(
@@ -62,11 +50,27 @@ def run_suite(options: SuiteOptions) -> int:
         read_stories.whole()
         raise InputError(f"{options.path} holds no rows; there is nothing to ask")
     started = time.perf_counter()
-    judged = _answer(stories, options)
-    report = _report(options, stories, read_stories.unread, judged, time.perf_counter() - started)
-    parts = _parts(options, stories, read_stories.unread, judged)
-    print_report(report, parts, as_json=options.json)
-    return 0 if all(each.ok for each in judged) and not read_stories.unread else 1
+    setting = {
+        "world": options.world,
+        "seed": options.seed,
+        "claims_from": options.claims_from,
+    }
+    with playing(f"{options.name} ({options.world})", options.out) as (folder, on_progress):
+        result = play_suite(
+            folder,
+            STORY_KIND,
+            story_cells(options.name, stories, setting),
+            {"suites": [options.name], "data": str(options.path), **setting},
+            filter(None, [options.claims_from]),
+            on_progress,
+        )
+        if options.out is not None:
+            write_tables(result)
+        rest = read_stories.unread, msgspec.convert(result.rows, list[JudgedAnswer])
+        report = _report(options, stories, *rest, time.perf_counter() - started)
+        parts = _parts(options, stories, *rest)
+        print_report(report, parts, as_json=options.json)
+        return status_of(result) or int(bool(read_stories.unread))
 
 
 def _check_films(options: SuiteOptions) -> None:
@@ -94,40 +98,14 @@ def parse_rows(text: str) -> frozenset[int]:
     return frozenset(rows)
 
 
-def _answer(stories: Sequence[StoryItems], options: SuiteOptions) -> list[JudgedAnswer]:
-    judged: list[JudgedAnswer] = []
-    reader = _reader(options)
-    step = max(1, len(stories) // _REPORTS)
-    with progress_on(f"{options.name} ({options.world})") as on_progress:
-        for number, asked in enumerate(stories):
-            if number % step == 0:
-                on_progress(f"story {number + 1}", number, len(stories))
-            knowing = replace(asked.knowing, claims_from=reader)
-            judged += answer_story(replace(asked, knowing=knowing), options.world, options.seed)
-        on_progress("all stories played", len(stories), len(stories))
-    return judged
-
-
-def _reader(options: SuiteOptions) -> "ClaimsFromModel | None":
-    """Return the model that extracts claims from utterances; None: there is none."""
-    if options.claims_from is None:
-        return None
-    from beliefnest.llm.claim_reader import claims_from_model
-    from beliefnest.llm.messages import Sampling
-    from beliefnest.llm.resolve import Connection, open_model
-
-    model = open_model(options.claims_from, os.environ, Connection())
-    return claims_from_model(model, Sampling(seed=options.seed))
-
-
 def _needs_first(judged: Sequence[JudgedAnswer]) -> dict[int, Score]:
     scores = scores_by_order(judged, lambda each: each.needs_first)
-    return {order: of_order for order, of_order in scores.items() if order > 0}
+    return {order: reached for order, reached in scores.items() if order > 0}
 
 
 def _telling(judged: Sequence[JudgedAnswer], *, tells: bool) -> list[JudgedAnswer]:
     """Return the answers about stories with claims (`tells`), or about those without."""
-    return [each for each in judged if each.tells is tells]
+    return [each for each in judged if each.claims is tells]
 
 
 def _report(
@@ -154,8 +132,8 @@ def _report(
         "with_claims": _scores_json(scores_by_order(_telling(judged, tells=True))),
         "first_believer_matters": _scores_json(_needs_first(judged)),
         "claims_from": options.claims_from,
-        "unread": sorted({each.item.row for each in judged if each.unread is not None}),
-        "wrong_in_data": [each.item.row for each in judged if each.data_fault is not None],
+        "unread": sorted({each.row for each in judged if each.unread is not None}),
+        "wrong_in_data": [each.row for each in judged if each.wrong_in_data is not None],
         "misses": [_miss_json(each) for each in judged if not each.ok],
     }
 
@@ -179,15 +157,15 @@ def _score_json(total: Score) -> dict[str, object]:
 
 def _miss_json(judged: JudgedAnswer) -> dict[str, object]:
     return {
-        "row": judged.item.row,
-        "order": judged.item.question.order,
-        "question": judged.item.question.text,
-        "path": judged.answer.path,
-        "answer": judged.answer.text,
-        "expected": judged.item.expected,
-        "claims": judged.tells,
-        "wrong_in_data": judged.data_fault,
-        "explanation": list(judged.explanation),
+        "row": judged.row,
+        "order": judged.order,
+        "question": judged.question,
+        "path": judged.path,
+        "answer": judged.answer,
+        "expected": judged.expected,
+        "claims": judged.claims,
+        "wrong_in_data": judged.wrong_in_data,
+        "explanation": judged.why_not.splitlines(),
     }
 
 
@@ -214,7 +192,7 @@ def _parts(
         yield f"not read and not counted: {count}"
     yield from (f"    {line}" for each in not_read for line in each.lines)
     yield from _notes(stories)
-    unread = {each.item.row: each.unread for each in judged if each.unread is not None}
+    unread = {each.row: each.unread for each in judged if each.unread is not None}
     for row, error in [*unread.items()][:1]:
         yield (
             f"{len(unread)} stories have utterances that could not be read for claims; "
@@ -222,9 +200,9 @@ def _parts(
         )
     for each in judged:
         if not each.ok:
-            yield f"row {each.item.row}: {each.item.question.text}"
-            faults = [] if each.data_fault is None else [each.data_fault]
-            yield from (f"    {line}" for line in (*faults, *each.explanation))
+            yield f"row {each.row}: {each.question}"
+            faults = [] if each.wrong_in_data is None else [each.wrong_in_data]
+            yield from (f"    {line}" for line in (*faults, *each.why_not.splitlines()))
 
 
 def _cells(total: Score) -> tuple[str, str]:

@@ -11,6 +11,7 @@ from beliefnest.llm.secrets import Secrets, secrets_in
 from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.archive import check_secrets, with_manifest
 from beliefnest.studies.filter_packages import PACKAGES, filter_packages
+from beliefnest.studies.kinds import EPISODE_KIND, SCENARIO_KIND
 from beliefnest.studies.methods import RunFacts, facts_of, methods_text
 from beliefnest.studies.page import page_text
 from beliefnest.studies.plainframe import csv_text
@@ -25,7 +26,12 @@ def opened(folder: Path) -> StudyRecord:
         InputError: The folder holds neither.
     """
     if (folder / "study.json").is_file() or (folder / "cells").is_dir():
-        return StudyRecord.read(folder)
+        result = StudyRecord.read(folder)
+        if result.kind not in (SCENARIO_KIND, EPISODE_KIND):
+            raise InputError(
+                f"{folder} holds {result.kind.name}; supplements are of scenarios and episodes"
+            )
+        return result
     if (folder / "run.json").is_file():
         return StudyRecord(ReportedRun(folder, read_report(folder)))
     raise InputError(

@@ -70,21 +70,23 @@ class _PlannedProbe(msgspec.Struct):
     expected: dict[str, Any] | None
 
 
-class _PlannedScenario(msgspec.Struct):
+class PlannedCell(msgspec.Struct):
+    """Entry of a cell in a plan."""
+
     name: str
     seed: int
-    key: _ScenarioKey
+    key: Any
     variation: str
     alike: str | None
+
+
+class _PlannedScenario(PlannedCell):
+    key: _ScenarioKey
     probes: list[_PlannedProbe]
 
 
-class _PlannedEpisode(msgspec.Struct):
-    name: str
-    seed: int
+class _PlannedEpisode(PlannedCell):
     key: _TaskKey
-    variation: str
-    alike: str | None
 
 
 class _Invalid(msgspec.Struct):
@@ -94,12 +96,18 @@ class _Invalid(msgspec.Struct):
     why: str
 
 
-class ScenariosPlan(msgspec.Struct):
+class CellsPlan(msgspec.Struct):
+    """Plan of cells of any kind."""
+
+    cells: list[Any]
+    invalid: list[_Invalid]
+    versions: dict[str, str]
+
+
+class ScenariosPlan(CellsPlan):
     """Plan of a study of scenarios."""
 
     cells: list[_PlannedScenario]
-    invalid: list[_Invalid]
-    versions: dict[str, str]
     inputs: InputIndex
 
 
@@ -127,13 +135,11 @@ class PeopleForm(msgspec.Struct):
     sessions: dict[str, _Sessions]
 
 
-class EpisodesPlan(msgspec.Struct):
+class EpisodesPlan(CellsPlan):
     """Plan of a study of episodes."""
 
     cells: list[_PlannedEpisode]
-    invalid: list[_Invalid]
     tasks: Any
-    versions: dict[str, str]
     inputs: InputIndex
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from beliefnest.importing import installed, load
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.forms import EpisodesPlan, PlayedEpisode, PlayedScenario, ScenariosPlan
 from beliefnest.studies.rows import PROBES
@@ -28,8 +29,8 @@ class CellKind:
     cell: type[Any]
     table: Table
     subject: str
-    players: str
-    player: tuple[str, str]
+    players: str = "models"
+    player: tuple[str, str] = ("model", "models")
 
 
 SCENARIO_KIND = CellKind(
@@ -38,8 +39,6 @@ SCENARIO_KIND = CellKind(
     cell=PlayedScenario,
     table=PROBES,
     subject="scenario",
-    players="models",
-    player=("model", "models"),
 )
 EPISODE_KIND = CellKind(
     name="episodes",
@@ -50,4 +49,13 @@ EPISODE_KIND = CellKind(
     players="players",
     player=("policy", "policies"),
 )
-KINDS = {each.name: each for each in (SCENARIO_KIND, EPISODE_KIND)}
+_KINDS = {each.name: each for each in (SCENARIO_KIND, EPISODE_KIND)}
+_GROUP = "beliefnest.kinds"
+"""Group of entry points of kinds that stand above studies, by name: objects `CellKind`."""
+
+
+def kind_named(name: str) -> CellKind | None:
+    """Return the kind of a name; None: there is none."""
+    entry = None if name in _KINDS else installed(_GROUP, name)
+    kind: CellKind | None = _KINDS.get(name) if entry is None else load(entry, "kind of cells")
+    return kind

@@ -16,7 +16,6 @@ from beliefnest.llm.budget import RunLimits
 from beliefnest.plan.cells import Keyed
 from beliefnest.plan.jobs import OnStudyProgress, run_cells
 from beliefnest.plan.scenario_cells import LABEL, Cell, CellKey
-from beliefnest.plan.terms import Terms
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template, built_in_template
 from beliefnest.scenarios.document import Document, YamlNode
 from beliefnest.scenarios.sources import read_document
@@ -91,11 +90,9 @@ def reproduce_study(
     cells = [inputs.cell(cell, recorded.kind) for cell in ended]
     place = StudyFolder.open(again, recorded.kind)
     place.write_plan({**plan, "cells": ended})
-    terms = Terms(
+    terms = replace(
+        place.terms(RunLimits(None, None)),
         answers=(folder / "answers").absolute(),
-        ledger=place.ledger.absolute(),
-        runs=None,
-        limits=RunLimits(None, None),
         environment={},
         cache_mode="only",
     )

@@ -305,12 +305,7 @@ class Study:
         part = plan if shard is None else plan.shard(*checked_shard(shard))
         self._check_valid(plan)
         place.check_subjects(self._plan_json(plan))
-        terms = Terms(
-            answers=place.answers.absolute(),
-            ledger=place.ledger.absolute(),
-            runs=(place.path / "runs").absolute() if record else None,
-            limits=self._design.limits,
-        )
+        terms = place.terms(self._design.limits, record=record)
         self._check_models(terms, backend)
         with holding(place.path):
             self._write_plan(place, self._plan_json(part))

@@ -11,12 +11,14 @@ import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular, replace_file, replacing
+from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.locking import is_lock
 from beliefnest.plan.spending import append_line
+from beliefnest.plan.terms import Terms
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
 from beliefnest.studies.forms import FailedCell, PeopleForm, PlanKind, SecondsForm, read_marked
-from beliefnest.studies.kinds import KINDS, CellKind
+from beliefnest.studies.kinds import CellKind, kind_named
 from beliefnest.world.texts import quoted
 
 _PLAN = "study.json"
@@ -142,6 +144,16 @@ class StudyFolder:
     def ledger(self) -> Path:
         """File with the usage of each answer, one line each."""
         return self.path / "spent.jsonl"
+
+    def terms(self, limits: RunLimits, *, record: bool = False) -> Terms:
+        """Return the terms of a plan whose answers and usage this folder keeps.
+
+        Args:
+            limits: Limits of tokens and cost of the whole plan.
+            record: Record the runs in this folder.
+        """
+        runs = (self.path / "runs").absolute() if record else None
+        return Terms(self.answers.absolute(), self.ledger.absolute(), runs, limits)
 
     def run(self, cell: str) -> Path:
         """Return the path of a cell's run file."""
@@ -348,9 +360,10 @@ class StudyFolder:
 def _kind_in(file: Path) -> CellKind:
     """Return the kind of cells of a plan; raise InputError if the plan names none of ours."""
     name = read_marked(file, _FORM, PlanKind, _PLAN_AGAIN)["kind"]
-    if name not in KINDS:
+    kind = kind_named(name)
+    if kind is None:
         raise InputError(f"{file} is damaged: there are no cells of {quoted(name)}; {_PLAN_AGAIN}")
-    return KINDS[name]
+    return kind
 
 
 def _json(content: Mapping[str, Any]) -> str:

@@ -9,16 +9,24 @@ from pathlib import Path
 import numpy as np
 import pandas
 import pytest
+from msgspec import convert
 from tests.profiles import NIGHTLY
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import InputError
 from beliefnest.suites.films.agreement import JudgesAgreement, agreement, interval
-from beliefnest.suites.films.film import FilmParameters, grid_for
+from beliefnest.suites.films.cells import film_cells
+from beliefnest.suites.films.film import FilmParameters, FilmRow, grid_for
 from beliefnest.suites.films.film_files import films_from, parameters_from, read_films
 from beliefnest.suites.films.film_inference import LESIONS, judge
 
 DATA = Path(__file__).parents[4] / "shared/samples/food-trucks/exp1.json"
+
+
+def rows_of(films, parameters, lesion=None):
+    """Return the rows of films in the table, as a plan plays them."""
+    cells = [cell for cell in film_cells("films", films, parameters) if cell.lesion == lesion]
+    return [row for cell in cells for row in convert(cell.play(None)["rows"], list[FilmRow])]
 
 
 @pytest.fixture(scope="module")
@@ -26,23 +34,22 @@ def published():
     if not DATA.exists():
         pytest.skip(f"no food-truck data at {DATA}")
     films, parameters = read_films(DATA)
-    judgments = [judge(film, parameters) for film in films]
-    return films, parameters, judgments
+    return films, parameters, rows_of(films, parameters)
 
 
 def test_correlates_with_people_as_published(published):
-    films, _, judgments = published
+    films, _, rows = published
     assert len(films) == 78
     assert sum(film.scored for film in films) == 73
-    assert agreement(judgments, "desires").r >= 0.90
-    assert agreement(judgments, "beliefs").r >= 0.76
+    assert agreement(rows, "desires").r >= 0.90
+    assert agreement(rows, "beliefs").r >= 0.76
 
 
 def test_lesions_are_worse(published):
-    films, parameters, judgments = published
-    whole = [agreement(judgments, what).r for what in ("desires", "beliefs")]
+    films, parameters, rows = published
+    whole = [agreement(rows, what).r for what in ("desires", "beliefs")]
     for lesion in LESIONS:
-        lesioned = [judge(film, parameters, lesion) for film in films]
+        lesioned = rows_of(films, parameters, lesion)
         for what, r in zip(("desires", "beliefs"), whole, strict=True):
             assert agreement(lesioned, what).r < r - 0.1
 
@@ -226,9 +233,9 @@ def test_a_step_that_no_hypothesis_explains_is_told_and_counts_for_nothing():
     content = two_places(human=human, actual="K+L", path_xy=[[2, 1], [1, 1]])
     (film,) = films_from(content)
     # The film ends with an act where no goal is.
-    judgment = judge(film, parameters_from(content))
-    assert judgment.impossible is not None
-    assert not len(agreement([judgment], "desires").model)
+    rows = rows_of([film], parameters_from(content))
+    assert {row.impossible is None for row in rows} == {False}
+    assert not len(agreement(rows, "desires").model)
 
 
 def pairs_of(model, people, films):
@@ -290,10 +297,10 @@ def test_the_suite_prints_correlations_and_writes_figures_and_tables(tmp_path, c
     assert "0.908" in told
     assert "films without judgments of people" in told
     written = sorted(path.name for path in (tmp_path / "out").iterdir())
-    assert [name for name in written if name != "judgments.parquet"] == [
-        *("judgments.csv", "scatter.pdf", "scatter.png", "scatter.svg")
+    assert [name for name in written if name not in {"rows.parquet", "seconds.jsonl"}] == [
+        *("cells", "rows.csv", "scatter.pdf", "scatter.png", "scatter.svg", "study.json")
     ]
-    frame = pandas.read_csv(tmp_path / "out/judgments.csv")
+    frame = pandas.read_csv(tmp_path / "out/rows.csv")
     assert list(frame["variant"].unique()) == ["model", "true_belief", "no_cost"]
     assert frame["people"].notna().sum() == 3 * 3 * 3
     assert suite(tmp_path, content, "--json") == 0

@@ -135,7 +135,7 @@ def test_rows_wrong_in_the_data_are_told_apart(tmp_path) -> None:
     path = published(tmp_path, (LEAVING, text, "jar", 2, "CoTP", False))
     ((judged,),) = (answer_story(each) for each in read_items(path).whole())
     assert not judged.ok
-    assert judged.data_fault is not None
+    assert judged.wrong_in_data is not None
 
 
 @pytest.mark.parametrize(

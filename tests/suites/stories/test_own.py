@@ -77,7 +77,7 @@ def test_own_stories_are_answered_as_they_say(file, world: str) -> None:
         for story in read_own(file(TOLD, LOOKING)).whole()
         for each in answer_story(story, world)
     ]
-    assert [each.explanation for each in judged if not each.ok] == []
+    assert [each.why_not for each in judged if not each.ok] == []
     assert len(judged) == 9
 
 
@@ -251,7 +251,7 @@ HANDS = {
 @pytest.mark.parametrize("world", ["scripted", "embedded"])
 def test_agents_act_without_an_entry_and_things_pass_through_hands(file, world: str) -> None:
     (story,) = read_own(file(HANDS)).whole()
-    assert [each.explanation for each in answer_story(story, world) if not each.ok] == []
+    assert [each.why_not for each in answer_story(story, world) if not each.ok] == []
 
 
 def test_who_cannot_hear_what_is_told_is_said(file, capsys) -> None:

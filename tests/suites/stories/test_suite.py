@@ -4,12 +4,23 @@ import json
 from pathlib import Path
 
 import pytest
+from msgspec import convert
 from tests.suites.stories.texts import COMING_BACK, SHARED_SECRET
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
+from beliefnest.cli.playing import status_of
+from beliefnest.suites.films.cells import FILM_KIND
+from beliefnest.suites.playing import play_suite
+from beliefnest.suites.stories.cells import STORY_KIND, story_cells
 from beliefnest.suites.stories.data import read_items
-from beliefnest.suites.stories.suite import Score, answer_story, score, scores_by_order
+from beliefnest.suites.stories.suite import (
+    JudgedAnswer,
+    Score,
+    answer_story,
+    score,
+    scores_by_order,
+)
 
 SAMPLE = Path(__file__).parents[4] / "shared" / "samples" / "hi-tom" / "sample.json"
 
@@ -90,7 +101,7 @@ def test_what_the_first_believer_changes_is_told_apart(file):
 def test_a_miss_is_explained_by_what_each_simulator_holds_and_since_when(file):
     (asked, _) = read_items(file(changed(2, answer="tin_box"))).whole()
     (miss,) = (each for each in answer_story(asked) if not each.ok)
-    text = "\n".join(miss.explanation)
+    text = miss.why_not
     assert "expected the tin_box" in text
     assert "/Ida/Tom holds the lantern in the oak_cabinet of the attic" in text
     assert "at tick 6, during line 6" in text
@@ -113,7 +124,7 @@ def test_the_command_prints_accuracy_and_ends_with_0_if_all_is_right(file, capsy
     assert report["orders"]["3"] == {"questions": 1, "right": 1, "accuracy": 1.0}
     assert report["first_believer_matters"]["1"] == {"questions": 2, "right": 2, "accuracy": 1.0}
     assert report["misses"] == []
-    assert "all stories played (2/2)" in err
+    assert "hi-tom (scripted): playing (2/2)" in err
 
 
 def test_the_command_lists_misses_and_ends_with_1(file, capsys):
@@ -132,6 +143,40 @@ def test_no_more_stories_are_played_than_asked_for(file, capsys):
     status, out, _ = run(capsys, "--data", file(ROWS), "--limit", 1, "--json")
     assert status == 0
     assert json.loads(out)["stories"] == 1
+
+
+def test_a_suite_goes_on_in_its_folder_and_its_rows_are_those_of_a_study(file, tmp_path, capsys):
+    out = tmp_path / "out"
+    command = ["--data", file(changed(2, answer="tin_box")), "--out", out]
+    assert run(capsys, *command, "--limit", 1)[0] == 1
+    (cell,) = (out / "cells").iterdir()
+    played = cell.stat().st_mtime_ns
+    status, told, _ = run(capsys, *command, "--json")
+    assert (status, json.loads(told)["all"]["right"]) == (1, 4)
+    assert cell.stat().st_mtime_ns == played
+    assert len(list((out / "cells").iterdir())) == 2
+    rows = bn.StudyResult.read(out).rows
+    assert [(row["row"], row["ok"], row["outcome"]) for row in rows][2] == (3, False, "wrong")
+    assert len({row["variation"] for row in rows}) == 2
+    assert run_command_line(["stats", str(out)]) == 0
+    assert "hi-tom" in capsys.readouterr().out
+    assert run_command_line(["methods", str(out)]) == 2
+    assert "supplements are of scenarios and episodes" in capsys.readouterr().err
+
+
+def test_a_story_that_cannot_be_played_counts_as_not_right_and_is_tried_again(file, tmp_path):
+    stories = read_items(file(ROWS)).whole()
+    setting = {"world": "nowhere", "seed": 0, "claims_from": None}
+    cells = story_cells("hi-tom", stories, setting)
+    result = play_suite(tmp_path / "out", STORY_KIND, cells, {}, (), lambda progress: None)
+    judged = convert(result.rows, list[JudgedAnswer])
+    assert {(each.ok, each.outcome, each.answer) for each in judged} == {(False, "error", None)}
+    assert "nowhere" in judged[0].why_not
+    assert score(judged) == Score(5, 0)
+    with pytest.raises(bn.ModelError, match="2 of 2 cells have no answer, counted as not right"):
+        status_of(result)
+    with pytest.raises(bn.InputError, match="holds a study of stories, and this one is of films"):
+        play_suite(tmp_path / "out", FILM_KIND, [], {}, (), lambda progress: None)
 
 
 @pytest.mark.parametrize(
@@ -157,5 +202,5 @@ def test_the_sample_of_hi_tom_is_answered_right_at_every_order():
     scores = scores_by_order(judged)
     assert set(scores) == {0, 1, 2, 3, 4}
     assert all(found.accuracy == 1 for found in scores.values()), [
-        each.explanation for each in judged if not each.ok
+        each.why_not for each in judged if not each.ok
     ]

@@ -1,13 +1,12 @@
 """Agreement of a model's judgments with those of people: correlations with intervals."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.suites.films.film import JudgedPart
-from beliefnest.suites.films.film_inference import Judgment
+from beliefnest.suites.films.film import FilmRow, JudgedPart
 from beliefnest.world.array_types import Floats
 
 PUBLISHED = {
@@ -49,21 +48,20 @@ class JudgesAgreement:
         return float(_pearson(_sums(self.model, self.people).sum(axis=0)))
 
 
-def agreement(judgments: Sequence[Judgment], about: JudgedPart) -> JudgesAgreement:
-    """Put the model's judgments of scored films beside people's.
+def agreement(rows: Iterable[FilmRow], about: JudgedPart) -> JudgesAgreement:
+    """Put a model's judgments of scored films beside people's.
 
     Films with a step that no hypothesis explains are left out.
     """
     names, pairs = [], []
-    for number, judgment in enumerate(judgments):
-        if not judgment.film.scored or judgment.impossible is not None:
-            continue
-        spread = judgment.film.errors.get(about, {})
-        said = judgment.model.get(about, {})
-        for name, value in judgment.film.people.get(about, {}).items():
-            if name in said:
-                names.append(name)
-                pairs.append((said[name], value, spread.get(name, np.nan), number))
+    numbers: dict[str, int] = {}
+    for row in rows:
+        number = numbers.setdefault(row.film, len(numbers))
+        counts = row.scored and row.impossible is None
+        if counts and row.about == about and row.people is not None:
+            names.append(row.name)
+            error = np.nan if row.people_se is None else row.people_se
+            pairs.append((row.model, row.people, error, number))
     columns = np.array(pairs, dtype=np.float64).reshape(-1, 4).T
     return JudgesAgreement(
         about, tuple(names), columns[0], columns[1], columns[2], columns[3].astype(np.int64)

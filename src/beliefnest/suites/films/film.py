@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from math import comb, prod
 from typing import Literal
 
+import msgspec
+
 from beliefnest.minds.infer_entries import MOST_HYPOTHESES
 
 FilmCell = tuple[int, int]
@@ -13,6 +15,9 @@ FilmCell = tuple[int, int]
 JudgedPart = Literal["desires", "beliefs", "locations"]
 ABOUT: tuple[JudgedPart, ...] = ("desires", "beliefs", "locations")
 """Kinds of judgments: wanted goals, initial beliefs, and real contents of places."""
+
+WHOLE = "model"
+"""Name of the model that lacks nothing."""
 
 NOTHING = "none"
 """Name for the content of a place without a goal."""
@@ -106,6 +111,38 @@ class Film:
 def event_name(place: str, goal: str | None) -> str:
     """Return the name of the event that a goal is at a place; None: no goal."""
     return f"{place}={goal or NOTHING}"
+
+
+class FilmRow(msgspec.Struct, frozen=True):
+    """Judgment of the model about a film, with that of people beside it.
+
+    Attributes:
+        film: Name of the film.
+        group: Its group; None: it has none.
+        scored: True if the film counts.
+        variant: The part that the model lacks; `model`: none.
+        about: Kind of the judgment, one of `ABOUT`.
+        name: Goal or event.
+        model: The model's mean.
+        people: Mean of people; None: not judged.
+        people_se: Its standard error; None: not known.
+        impossible: The first step that no hypothesis explains; None: each is explained.
+        ok: None: judgments are neither right nor wrong.
+        outcome: `ok`.
+    """
+
+    film: str
+    group: str | None
+    scored: bool
+    variant: str
+    about: str
+    name: str
+    model: float
+    people: float | None
+    people_se: float | None
+    impossible: str | None
+    ok: bool | None = None
+    outcome: str = "ok"
 
 
 _MOST_WEIGHTS = 60_000_000

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from beliefnest.files import read_regular
 from beliefnest.suites.stories.answer_check import is_told_of
-from beliefnest.suites.stories.data import ReadStories, StoryItems, Unread
+from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.own import read_own
 from beliefnest.suites.stories.played_story import Knowing
 from beliefnest.suites.stories.suite import JudgedAnswer, answer_story
@@ -108,38 +108,40 @@ def audit(
 
 def _of_story(asked: StoryItems) -> Iterator[Finding]:
     """Yield a finding for each label of a story that is not the answer of the nest."""
-    missed = [each for each in answer_story(asked) if not each.ok]
+    answers = zip(asked.items, answer_story(asked), strict=True)
+    missed = [(item, each) for item, each in answers if not each.ok]
     if not missed:
         return
-    others = dict(_otherwise(asked, missed))
-    for each in missed:
-        fault, assumption = each.data_fault, others.get(each.item.row) or _unsaid(asked, each)
+    others = dict(_otherwise(asked, [each for _, each in missed]))
+    for item, each in missed:
+        fault = each.wrong_in_data
+        assumption = others.get(each.row) or _unsaid(asked, item, each)
         yield Finding(
-            row=each.item.row,
-            question=each.item.question.text,
-            label=each.item.expected,
-            answer=each.answer.text,
-            why=each.explanation if fault is None else (fault,),
+            row=each.row,
+            question=each.question,
+            label=each.expected,
+            answer=each.answer,
+            why=tuple(each.why_not.splitlines()) if fault is None else (fault,),
             is_wrong=fault is not None or assumption is None,
             assumption=assumption,
         )
 
 
-def _unsaid(asked: StoryItems, missed: JudgedAnswer) -> str | None:
+def _unsaid(asked: StoryItems, item: BatteryItem, missed: JudgedAnswer) -> str | None:
     """Return what a label may rest on that the text leaves open; None: nothing."""
-    question, label = missed.item.question, missed.item.expected
+    question, label = item.question, item.expected
     is_place = not (question.door or question.sign)
     if is_place and label not in {None, *(place.container for place in asked.story.places)}:
         return None
     if is_told_of(asked.story, question):
         return "another rule of what hearers believe"
-    return "something that the story does not say" if missed.answer.text is None else None
+    return "something that the story does not say" if missed.answer is None else None
 
 
 def _otherwise(asked: StoryItems, missed: list[JudgedAnswer]) -> Iterator[tuple[int, str]]:
     """Yield rows whose label is right under another assumption, and that assumption."""
-    rows = {each.item.row for each in missed}
+    rows = {each.row for each in missed}
     items = tuple(each for each in asked.items if each.row in rows)
     for words, change in {**_CONTENTS, **(_CLAIMS if asked.story.tells else {})}.items():
         changed = replace(asked, items=items, knowing=change(asked.knowing))
-        yield from ((each.item.row, words) for each in answer_story(changed) if each.ok)
+        yield from ((each.row, words) for each in answer_story(changed) if each.ok)

@@ -2,41 +2,50 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
+
+import msgspec
 
 from beliefnest.suites.stories.answer_check import data_fault
-from beliefnest.suites.stories.data import BatteryItem, StoryItems
+from beliefnest.suites.stories.data import StoryItems
 from beliefnest.suites.stories.explaining import explain_answer
-from beliefnest.suites.stories.played_story import PlayedStory, StoryAnswer
+from beliefnest.suites.stories.played_story import PlayedStory
 
 
-@dataclass(frozen=True, slots=True)
-class JudgedAnswer:
-    """Answer to a question, compared with the expected one.
+class JudgedAnswer(msgspec.Struct, frozen=True):
+    """Answer to a question, compared with the expected one: a row of the table of a suite.
 
     Attributes:
-        item: Question and expected answer.
-        answer: Answer of the nest.
+        row: Row of the question in the file.
+        order: Order of the question.
+        claims: True if an agent tells something in the story.
+        question: The question.
+        expected: Expected answer, as in `BatteryItem`.
+        path: Path of the simulator that answered; None: there is no answer.
+        answer: Answer of the nest, as `StoryAnswer.text`.
         needs_first: True if the expected answer differs from the nest's answer to the question
             without its first believer; False if there is no believer.
-        tells: True if an agent tells something in the story.
-        data_fault: How the expected answer contradicts its story; None: no contradiction found.
-        explanation: Explanation of a wrong answer; else empty.
+        ok: True if the answer is the expected one; None: nobody was asked.
+        outcome: Outcome in words, as in studies.
+        why_not: Explanation of a wrong answer, in lines; else empty.
+        wrong_in_data: How the expected answer contradicts its story; None: no contradiction found.
         unread: Reason why a model could not read an utterance of the story for claims; None: it
             read all of them, or there is no such model.
     """
 
-    item: BatteryItem
-    answer: StoryAnswer
-    needs_first: bool
-    tells: bool = False
-    data_fault: str | None = None
-    explanation: tuple[str, ...] = ()
+    row: int
+    order: int
+    claims: bool
+    question: str
+    expected: str | None
+    path: str | None
+    answer: str | None
+    needs_first: bool | None
+    ok: bool | None
+    outcome: str
+    why_not: str = ""
+    wrong_in_data: str | None = None
     unread: str | None = None
-
-    @property
-    def ok(self) -> bool:
-        """Return True if the answer is the expected one."""
-        return self.answer.text == self.item.expected
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,32 +84,56 @@ def answer_story(
     ) as played:
         answers = played.answer_all([*questions, *dropped])
         without = dict(zip(nested, answers[len(questions) :], strict=True))
-        judged = []
         unread = next((p.error for p in played.nest.prompts() if p.answer is None), None)
-        for item, answer in zip(asked.items, answers, strict=False):
+        judged = []
+        for item, begun, answer in zip(asked.items, asked_in(asked), answers, strict=False):
             other = without.get(item.question)
-            needs_first = other is not None and other.text != item.expected
-            each = JudgedAnswer(item, answer, needs_first, asked.story.tells)
-            if not each.ok:
+            ok = answer.text == item.expected
+            why, fault = (), None
+            if not ok:
                 fault = data_fault(asked.story, item.question, item.expected)
                 why = explain_answer(played, item.question, answer, item.expected)
-                each = replace(each, data_fault=fault, explanation=why)
-            judged.append(replace(each, unread=unread))
+            judged.append(
+                JudgedAnswer(
+                    **begun,
+                    path=answer.path,
+                    answer=answer.text,
+                    needs_first=other is not None and other.text != item.expected,
+                    ok=ok,
+                    outcome="ok" if ok else "wrong",
+                    why_not="\n".join(why),
+                    wrong_in_data=fault,
+                    unread=unread,
+                )
+            )
     return tuple(judged)
 
 
+def asked_in(asked: StoryItems) -> list[dict[str, Any]]:
+    """Return what is known of each row before a story is played."""
+    return [
+        {
+            "row": item.row,
+            "order": item.question.order,
+            "claims": asked.story.tells,
+            "question": item.question.text,
+            "expected": item.expected,
+        }
+        for item in asked.items
+    ]
+
+
 def score(judged: Iterable[JudgedAnswer]) -> Score:
-    """Return the score of some answers."""
-    verdicts = [each.ok for each in judged]
+    """Return the score of some answers; those of which nobody was asked do not count."""
+    verdicts = [each.ok for each in judged if each.ok is not None]
     return Score(len(verdicts), sum(verdicts))
 
 
 def scores_by_order(
-    judged: Sequence[JudgedAnswer], of: Callable[[JudgedAnswer], bool] = lambda _: True
+    judged: Sequence[JudgedAnswer], of: Callable[[JudgedAnswer], object] = lambda _: True
 ) -> dict[int, Score]:
     """Return the score of each order of questions, over the answers that `of` selects."""
-    orders = sorted({each.item.question.order for each in judged})
     return {
-        order: score(each for each in judged if each.item.question.order == order and of(each))
-        for order in orders
+        order: score(each for each in judged if each.order == order and of(each))
+        for order in sorted({each.order for each in judged})
     }

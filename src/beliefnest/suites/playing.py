@@ -1,0 +1,167 @@
+"""Playing of a suite: its cells, their table, and their folder, which is like that of a study."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import NoneType
+from typing import Any, Generic, TypeVar, get_args
+
+import msgspec
+
+from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.resolve import open_model
+from beliefnest.locking import holding
+from beliefnest.nest.past.versions import own_versions
+from beliefnest.plan.cells import Key, Keyed, variation_id
+from beliefnest.plan.jobs import OnStudyProgress, run_cells
+from beliefnest.studies.forms import CellsPlan, PlannedCell
+from beliefnest.studies.kinds import CellKind
+from beliefnest.studies.result import StudyResult
+from beliefnest.studies.study_folder import StudyFolder
+from beliefnest.studies.table import Column, ColumnType, Table, lost, of_key, of_result
+from beliefnest.worlds.minecraft.launching import ahead
+
+RowT = TypeVar("RowT")
+_COLUMNS: Mapping[type, ColumnType] = {
+    str: "string",
+    int: "int64",
+    float: "float64",
+    bool: "bool",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class SuiteKey(Key):
+    """Identity of a cell of a suite.
+
+    Attributes:
+        suite: Name of the suite.
+        content: Hash of what is played.
+        setting: Settings that affect the result; `seed`: seed of all random numbers.
+        variation: Nothing: a suite varies nothing.
+    """
+
+    suite: str
+    content: str
+    setting: Mapping[str, Any]
+    variation: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def seed(self) -> int:
+        """Return the seed of all random numbers of the cell."""
+        return int(self.setting["seed"])
+
+    def planned(self, independent: object, rows: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+        """Return the entry of the cell in a plan.
+
+        Args:
+            independent: Value that is the same for rows that depend on each other.
+            rows: What is known of each row before the cell is played.
+        """
+        return {
+            "name": self.name,
+            "key": self.content_json(),
+            "seed": self.seed,
+            "variation": variation_id(self.suite, independent),
+            "alike": None,
+            "rows": list(rows),
+        }
+
+
+class _SuiteKeyForm(msgspec.Struct):
+    suite: str
+    variation: dict[str, Any]
+
+
+class _SuiteCellForm(PlannedCell):
+    key: _SuiteKeyForm
+    rows: list[dict[str, Any]]
+
+
+class _SuitePlan(CellsPlan):
+    cells: list[_SuiteCellForm]
+
+
+class _PlayedRows(msgspec.Struct, Generic[RowT]):
+    error: None
+    rows: list[RowT]
+
+
+def suite_kind(
+    name: str, row: type, groups: tuple[str, ...], *, is_judged: bool, means: Sequence[str] = ()
+) -> CellKind:
+    """Return the kind of the cells of a suite.
+
+    Args:
+        name: Its name.
+        row: Form of a row, whose fields are columns of the table.
+        groups: Default columns by which summaries group rows.
+        is_judged: True if rows are right or wrong.
+        means: Columns whose means are in summaries.
+    """
+
+    def results(cell: Mapping[str, Any], content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+        if content["error"] is None:
+            yield from content["rows"]
+            return
+        for each in cell["rows"]:
+            yield {**each, **lost(content, is_judged=is_judged)}
+
+    table = Table(
+        results=results,
+        first=(Column("suite", "string", of_key("suite"), identifies=True),),
+        columns=(
+            Column("variation", "string", lambda source: source.cell["variation"], shown=True),
+            *_columns(row),
+            Column("seed", "int64", lambda source: source.cell["seed"]),
+            Column("cell", "string", lambda source: source.cell["name"]),
+            Column("copy_of", "string", of_result("copy_of")),
+        ),
+        groups=groups,
+        further_groups=(),
+        compared=(),
+        apart=(),
+        means=dict.fromkeys(means, False),
+    )
+    return CellKind(name, _SuitePlan, _PlayedRows[row], table, subject="suite")  # type: ignore[valid-type]
+
+
+def _columns(form: type) -> Iterator[Column]:
+    for each in msgspec.structs.fields(form):
+        (kind,) = {*(get_args(each.type) or (each.type,))} - {NoneType}
+        yield Column(each.name, _COLUMNS[kind], of_result(each.name), shown=True)
+
+
+def play_suite(
+    folder: Path,
+    kind: CellKind,
+    cells: Sequence[Keyed],
+    about: Mapping[str, Any],
+    models: Iterable[str],
+    on_progress: OnStudyProgress,
+) -> StudyResult:
+    """Play the cells of a suite without a result in a folder, and return all results.
+
+    Args:
+        folder: Folder of the results; made if it does not exist.
+        kind: Kind of the cells.
+        cells: The cells.
+        about: Further values of the plan.
+        models: Names of the models that the cells ask.
+        on_progress: Function that receives the progress.
+
+    Raises:
+        InputError: The folder holds something else, or another process plays in it.
+        ModelError: A model does not exist, or its key is missing.
+    """
+    place = StudyFolder.open(folder, kind)
+    planned = [cell.plain() for cell in cells]
+    plan = {**about, "cells": planned, "invalid": [], "versions": own_versions()}
+    place.check_subjects(plan)
+    terms = place.terms(RunLimits())
+    # Answers of a file go on from cell to cell.
+    opened = {name: open_model(name, terms.surroundings, terms.connection()) for name in models}
+    with holding(place.path):
+        place.write_plan(plan)
+        run_cells(cells, place, replace(terms, models=opened), 1, "loky", on_progress, ahead)
+    return StudyResult(place)
