@@ -45,6 +45,7 @@ class Priced:
     ("limits", "message"),
     [
         (RunLimits(tokens=400, cost=None), r"has used 450 tokens and may use 400"),
+        (RunLimits(tokens=450, cost=None), r"has used 450 tokens and may use 450"),
         (RunLimits(tokens=None, cost=2.0), r"has cost 2\.25 US dollars and may cost 2\.00"),
     ],
 )

@@ -42,6 +42,21 @@ episode:
   rounds: 8
   round_ticks: 10
 """
+FORBIDDEN = """
+name: forbidden
+box: [[0, 0, 0], [6, 3, 6]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [6, 0, 6]]}
+containers:
+  - {label: chest, at: [3, 1, 3], items: {apple: 1}}
+agents:
+  ann: {position: [1.5, 1, 1.5], facing: south}
+initial_beliefs:
+  - {path: /ann, containers: [{at: [3, 1, 3], items: {apple: 1}}]}
+episode:
+  goal: {reach: [{agent: ann, items: {apple: 1}}], never: [{agent: ann, items: {apple: 1}}]}
+  rounds: 1
+"""
 POLICIES = dict.fromkeys(("ann", "bob", "carl"), "search:1")
 
 
@@ -91,6 +106,18 @@ def test_a_trace_has_courses_scores_and_what_others_were_expected_to_do(
         ):
             with pytest.raises(bn.InputError, match=message):
                 episode.search_trace(*wrong)
+
+
+def test_a_course_that_violates_the_goal_is_worse_than_one_that_leaves_it_open(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "forbidden.yaml"
+    file.write_text(FORBIDDEN, encoding="utf-8")
+    with bn.Episode(bn.Task.load(str(file), 0), {"ann": "search:0"}) as episode:
+        episode.play()
+        courses = episode.search_trace("ann", 0).courses
+    assert {course.outcome: course.score[0] for course in courses} == {"open": 1, "violated": 2}
+    assert not episode.parts[0].decisions["ann"].program
 
 
 def test_other_policies_record_no_courses(door: str) -> None:
