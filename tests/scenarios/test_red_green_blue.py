@@ -7,9 +7,8 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.errors import ScenarioError
-from beliefnest.facts.kinds import BlockIs
+from beliefnest.facts.kinds import BlockIs, StatedFact
 from beliefnest.llm.offline import OfflineModel
-from beliefnest.scenarios.expected import Expectation
 from beliefnest.scenarios.running import run_scenario
 
 BLOCKS = {"red": (4, 1, 2), "green": (6, 1, 7), "blue": (8, 1, 2)}
@@ -51,9 +50,8 @@ def test_a_block_that_is_another_or_unknown_is_not_as_expected():
     scenario = bn.Scenario.load("red-green-blue", 1)
     states = [("red", "blue_wool"), ("red", None), ("blue", "air")]
     wrong = [BlockIs(BLOCKS[name], state) for name, state in states]
-    scenario = replace(
-        scenario, expectations=tuple(Expectation("/agent_1", fact) for fact in wrong)
-    )
+    expectations = tuple(StatedFact(fact, ("agent_1",)) for fact in wrong)
+    scenario = replace(scenario, expectations=expectations)
     with bn.Nest.open(scenario, "scripted") as nest:
         assert judged(nest, scenario) == [False] * 3
 

@@ -60,7 +60,7 @@ def _why(nest: Nest, outcome: ProbeOutcome, run: Outcome) -> list[str]:
     about = [
         each.expectation.fact
         for each in run.expectations
-        if nest[each.expectation.path].path == belief.path
+        if nest[each.expectation.simulator].path == belief.path
     ]
     places = [each.store for each in about if each.store is not None]
     places += [each.explained for each in outcome.probe.expect if each.explained is not None]

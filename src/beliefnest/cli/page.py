@@ -74,7 +74,7 @@ def about_run(journal: Journal, nest: RecordedNest, paths: Sequence[str] = ()) -
         condition = run.condition_number
         scenario = Scenario.kept(run.text, run.templates, condition, f"scenario of {journal.path}")
     named = [probe.path for probe in scenario.probes]
-    named += [each.path for each in scenario.expectations]
+    named += [each.simulator for each in scenario.expectations]
     wanted = [parse_path(path, nest.agents) for path in (*paths, *named)]
     number = "" if scenario.condition is None else f"condition {scenario.condition}: "
     return About(

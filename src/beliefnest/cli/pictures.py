@@ -77,7 +77,7 @@ def _viewers(scenario: Scenario) -> tuple[str, ...]:
     """Return the path of the first probe, or of the deepest expectation if there is no probe."""
     agents = scenario.setting.snapshot.agents
     asked = [probe.path for probe in scenario.probes[:1]]
-    expected = [each.path for each in scenario.expectations]
+    expected = [each.simulator for each in scenario.expectations]
     paths = [parse_path(path, agents) for path in asked or expected]
     return max(paths, key=len, default=())
 
@@ -150,9 +150,9 @@ def _place_words(name: str, state: State, scenario: Scenario) -> str:
 
 def _held(state: State, outcome: Outcome) -> bool | None:
     """Return True if a simulator meets all expectations about it; None: there are none."""
-    verdicts = [
-        each.ok for each in outcome.expectations if outcome.state(each.expectation.path) is state
-    ]
+    expectations = outcome.expectations
+    own = [each for each in expectations if outcome.state(each.expectation.simulator) is state]
+    verdicts = [each.ok for each in own]
     return all(verdicts) if verdicts else None
 
 

@@ -240,9 +240,8 @@ def _cells(outcome: Outcome) -> dict[str, str]:
     cells: dict[str, list[str]] = {}
     for each in outcome.expectations:
         expectation, setting = each.expectation, outcome.scenario.setting
-        what, state_words = expectation.fact.found(
-            StateFacts(outcome.state(expectation.path)), partial(container_name, setting=setting)
-        )
+        facts = StateFacts(outcome.state(expectation.simulator))
+        what, state_words = expectation.fact.found(facts, partial(container_name, setting=setting))
         heading = f"{escape(what)} in {expectation.where}"
         cells.setdefault(heading, []).append(_marked(escape(state_words), each.ok))
     for probe in outcome.probes:

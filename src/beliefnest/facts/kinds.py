@@ -795,16 +795,32 @@ def middle_of(place: Point | Position) -> Point:
 
 
 @dataclass(frozen=True, slots=True)
-class GoalCondition:
-    """Condition that a fact holds in reality or in a belief.
+class StatedFact:
+    """Fact that somebody wants, expects or observes, in reality or in a belief.
 
     Attributes:
         fact: The fact.
         path: Belief path; `()` is reality.
+        label: Name for tables.
     """
 
     fact: Fact
     path: BeliefPath = ()
+    label: str = ""
+
+    @property
+    def simulator(self) -> str:
+        """Return the path as text."""
+        return path_text(self.path)
+
+    @property
+    def where(self) -> str:
+        """Return the simulator for people: `reality`, or its path."""
+        return self.simulator if self.path else "reality"
+
+    def written(self) -> dict[str, Any]:
+        """Return plain values: path, label, and the fact with the keys of scenario files."""
+        return {"path": self.simulator, "label": self.label, "expected": self.fact.written()}
 
     def holds(self, look: Look) -> bool:
         """Return True if the fact holds there."""
@@ -815,7 +831,7 @@ class GoalCondition:
         return {self.path[0]} if self.path else self.fact.bringers(events)
 
     def __str__(self) -> str:
-        return f"{path_text(self.path)}: {self.fact}" if self.path else str(self.fact)
+        return f"{self.simulator}: {self.fact}" if self.path else str(self.fact)
 
 
 def _named(items: Items) -> str:

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import msgspec
 
 from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
-from beliefnest.facts.kinds import KINDS, Fact, FactEntry, GoalCondition
+from beliefnest.facts.kinds import KINDS, Fact, FactEntry, StatedFact
 from beliefnest.world.forms import scene_kinds
 from beliefnest.world.paths import BeliefPath, parse_path
 from beliefnest.world.registry import Registry
@@ -217,7 +217,7 @@ def fact_in(entry: FactEntry) -> Fact:
     return facts[0]
 
 
-def conditions_of(entry: FactEntry, agents: Collection[str]) -> list[GoalCondition]:
+def conditions_of(entry: FactEntry, agents: Collection[str]) -> list[StatedFact]:
     """Return the conditions of an entry, one for each smallest part of its fact.
 
     Raises:
@@ -225,4 +225,4 @@ def conditions_of(entry: FactEntry, agents: Collection[str]) -> list[GoalConditi
         PathError: The belief does not exist.
     """
     path = parse_path(entry.path, agents)
-    return [GoalCondition(fact, path) for fact in fact_in(entry).parts]
+    return [StatedFact(fact, path) for fact in fact_in(entry).parts]

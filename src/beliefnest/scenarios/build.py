@@ -17,7 +17,7 @@ from beliefnest.scenarios.agent_entries import build_agents
 from beliefnest.scenarios.checks import Checks, check_inside
 from beliefnest.scenarios.content import Probe, ScenarioContent, ScenarioWarning
 from beliefnest.scenarios.document import Document, KeyPath, plain
-from beliefnest.scenarios.expected import Expectation, Expected
+from beliefnest.scenarios.expected import Expected, expected_fact
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_kinds import Infers, read_expected, read_inferred
 from beliefnest.scenarios.format import (
@@ -86,7 +86,7 @@ def build_scenario(
         conditions=descriptions,
         probes=probes,
         expectations=tuple(
-            Expectation.read(entry, ("expectations", n), builder.checks)
+            expected_fact(entry, ("expectations", n), builder.checks)
             for n, entry in enumerate(file.expectations)
         ),
         rules=builder.rules(),

@@ -4,10 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from beliefnest.facts.kinds import StatedFact
 from beliefnest.nest.past.setting import Setting
 from beliefnest.prompts.rendering import check_variables
 from beliefnest.prompts.templates import Template, built_in_template
-from beliefnest.scenarios.expected import Expectation, Expected
+from beliefnest.scenarios.expected import Expected
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry
@@ -144,7 +145,7 @@ class ScenarioContent:
     condition_description: str = ""
     conditions: Mapping[int, str] = field(default_factory=dict)
     probes: tuple[Probe, ...] = ()
-    expectations: tuple[Expectation, ...] = ()
+    expectations: tuple[StatedFact, ...] = ()
     rules: EpisodeEntry | None = None
     written: Mapping[str, Any] = field(default_factory=dict)
     source: str = "scenario"

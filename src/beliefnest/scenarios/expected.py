@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
 import msgspec
 
-from beliefnest.facts.kinds import WITHIN, Fact, FactEntry
+from beliefnest.facts.kinds import WITHIN, FactEntry, StatedFact
 from beliefnest.facts.reading import check_entry, fact_in
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.believed import Believed, BelievedEntry, StateOf
@@ -91,37 +91,14 @@ class ExpectationEntry(FactEntry, frozen=True, kw_only=True):
     label: Annotated[str, note("A name for tables and overrides.", "keep")] = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Expectation:
-    """Expectation about a simulator after the script.
+def expected_fact(entry: ExpectationEntry, path: KeyPath, checks: Checks) -> StatedFact:
+    """Return the fact that an entry expects.
 
-    Attributes:
-        path: Path of the simulator.
-        fact: Expected fact.
-        label: Name for tables.
+    Raises:
+        ScenarioError: The entry is no fact, or names something that does not exist.
     """
-
-    path: str
-    fact: Fact
-    label: str = ""
-
-    @classmethod
-    def read(cls, entry: ExpectationEntry, path: KeyPath, checks: Checks) -> "Expectation":
-        """Return the expectation of an entry.
-
-        Raises:
-            ScenarioError: The entry is no expectation, or names something that does not exist.
-        """
-        return cls(entry.path, fact_in(check_entry(entry, path, checks)), entry.label)
-
-    def written(self) -> dict[str, Any]:
-        """Return plain values: path, label, and the fact with the keys of scenario files."""
-        return {"path": self.path, "label": self.label, "expected": self.fact.written()}
-
-    @property
-    def where(self) -> str:
-        """Return the simulator for people: `reality`, or its path."""
-        return "reality" if self.path == "/" else self.path
+    fact = fact_in(check_entry(entry, path, checks))
+    return StatedFact(fact, checks.belief_path((*path, "path"), entry.path), entry.label)
 
 
 class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from beliefnest.errors import ScenarioError
-from beliefnest.facts.kinds import WITHIN, middle_of
+from beliefnest.facts.kinds import WITHIN, StatedFact, middle_of
 from beliefnest.facts.states import StateFacts
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.believed import Believed, BelievedEntry, StateOf
@@ -15,12 +15,12 @@ from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.scenarios.expected import (
     Deed,
-    Expectation,
     Expected,
     ExpectEntry,
     Judgement,
     ProbeFacts,
     as_list,
+    expected_fact,
     source_of,
 )
 from beliefnest.scenarios.naming import Naming, container_name, named_place
@@ -319,27 +319,27 @@ class Believes(Deed):
 
     many = True
     ground = "what is believed once the program has ended"
-    expectation: Expectation
+    expectation: StatedFact
 
     @property
     def wanted(self) -> str:
-        return self.expectation.label or f"{self.expectation.path} as expected"
+        return self.expectation.label or f"{self.expectation.simulator} as expected"
 
     @property
     def paths(self) -> tuple[str, ...]:
-        return (self.expectation.path,)
+        return (self.expectation.simulator,)
 
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Believes"]:
         for number, each in enumerate(as_list(entry.believes)):
-            yield cls(Expectation.read(each, (*path, "believes", number), checks))
+            yield cls(expected_fact(each, (*path, "believes", number), checks))
 
     def written(self) -> dict[str, Any]:
         return {"believes": [self.expectation.written()]}
 
     def judge(self, trial: Trial) -> Judgement:
         expectation = self.expectation
-        instead = expectation.fact.instead(StateFacts(trial.belief(expectation.path)))
+        instead = expectation.fact.instead(StateFacts(trial.belief(expectation.simulator)))
         return self.verdict(instead is None, f"{expectation.where}: {instead}")
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from beliefnest.facts.kinds import GoalCondition
+from beliefnest.facts.kinds import StatedFact
 from beliefnest.facts.states import Look
 from beliefnest.world.paths import BeliefPath
 
@@ -23,14 +23,14 @@ class Goal:
             agent does not help.
     """
 
-    reach: tuple[GoalCondition, ...] = ()
-    never: tuple[GoalCondition, ...] = ()
+    reach: tuple[StatedFact, ...] = ()
+    never: tuple[StatedFact, ...] = ()
     messages: int | None = None
     ticks: int | None = None
     helps: str | None = None
 
     @property
-    def conditions(self) -> tuple[GoalCondition, ...]:
+    def conditions(self) -> tuple[StatedFact, ...]:
         """Return all conditions of the goal."""
         return (*self.reach, *self.never)
 
@@ -40,7 +40,7 @@ class Goal:
         return not (mine <= theirs or theirs <= mine)
 
     @property
-    def _wanted(self) -> frozenset[tuple[bool, GoalCondition]]:
+    def _wanted(self) -> frozenset[tuple[bool, StatedFact]]:
         wanted = [(True, each) for each in self.reach] + [(False, each) for each in self.never]
         return frozenset(wanted)
 

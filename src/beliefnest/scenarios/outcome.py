@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
+from beliefnest.facts.kinds import StatedFact
 from beliefnest.llm.messages import AnswerForm, Usage
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Expectation, Judgement
+from beliefnest.scenarios.expected import Judgement
 from beliefnest.scenarios.inferring import Inferred
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.trial import Trial
@@ -149,7 +150,7 @@ class ExpectationOutcome:
         why_not: What the simulator believes instead; None: the expectation holds.
     """
 
-    expectation: Expectation
+    expectation: StatedFact
     why_not: str | None = None
 
     @property
@@ -213,7 +214,7 @@ class Outcome:
     def failures(self) -> tuple[str, ...]:
         """Return a line for each unmet expectation: its name, and what happened instead."""
         beliefs = [
-            f"{each.expectation.label or each.expectation.path}: {each.why_not}"
+            f"{each.expectation.label or each.expectation.simulator}: {each.why_not}"
             for each in self.expectations
             if not each.ok
         ]

@@ -52,7 +52,7 @@ def run_scenario(
     paths = _paths(scenario)
     states = nest.states(["/", *paths])
     expectations = tuple(
-        ExpectationOutcome(each, each.fact.instead(StateFacts(nest[each.path].state)))
+        ExpectationOutcome(each, each.fact.instead(StateFacts(nest[each.simulator].state)))
         for each in scenario.expectations
     )
     probes = []
@@ -88,7 +88,7 @@ def _wait_words() -> str:
 def _paths(scenario: Scenario) -> list[str]:
     """Return the paths of all beliefs that the scenario names, normalized, shallow ones first."""
     agents = scenario.setting.snapshot.agents
-    named = [each.path for each in scenario.expectations]
+    named = [each.simulator for each in scenario.expectations]
     named += [path for probe in scenario.probes for path in (probe.path, probe.acts_in)]
     named += [path for probe in scenario.probes for each in probe.expect for path in each.paths]
     paths = {parse_path(path, agents) for path in named}

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from beliefnest.episodes.imagination import Imagination
-from beliefnest.facts.kinds import GoalCondition
+from beliefnest.facts.kinds import StatedFact
 from beliefnest.facts.states import ViewFacts
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.paths import BeliefPath, normalised
@@ -72,12 +72,12 @@ class BeliefFacts(ViewFacts):
         return False
 
 
-def is_visible(condition: GoalCondition, mind: Imagination) -> bool:
+def is_visible(condition: StatedFact, mind: Imagination) -> bool:
     """Return True if a mind is deep enough to evaluate a condition."""
     return mind.knows(condition.path)
 
 
-def held(condition: GoalCondition, mind: Imagination) -> bool:
+def held(condition: StatedFact, mind: Imagination) -> bool:
     """Return True if a condition that is visible holds in a mind."""
     if normalised((*mind.root, *condition.path)) == mind.root:
         return condition.fact.holds(MindFacts(mind))
@@ -90,7 +90,7 @@ def distance(goal: Goal, mind: Imagination) -> float:
     return sum(_off(each, mind, facts) for each in goal.reach)
 
 
-def _off(condition: GoalCondition, mind: Imagination, facts: MindFacts) -> float:
+def _off(condition: StatedFact, mind: Imagination, facts: MindFacts) -> float:
     if condition.path:
         # A mind that is not deep enough cannot tell: count the condition as open in any case.
         return 0.0 if is_visible(condition, mind) and held(condition, mind) else 1.0

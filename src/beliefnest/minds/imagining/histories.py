@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from beliefnest.belief.view import State
 from beliefnest.errors import BranchError, InputError, PathError, StoreError
-from beliefnest.facts.kinds import GoalCondition, Heard
+from beliefnest.facts.kinds import Heard, StatedFact
 from beliefnest.facts.states import Facts, StateFacts
 from beliefnest.minds.imagining.courses import Course
 from beliefnest.minds.imagining.history_starts import HistoryStarts
@@ -349,7 +349,7 @@ class Imagined(Barred):
         journal.create(key, self._base, self._base.tick)
         journal.append(key, self._starts.entries(course), course.tick)
 
-    def _holds(self, course: Course, wanted: Sequence[GoalCondition]) -> bool:
+    def _holds(self, course: Course, wanted: Sequence[StatedFact]) -> bool:
         is_about_speech = any(isinstance(each.fact, Heard) for each in wanted)
 
         def look(path: BeliefPath) -> Facts:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from beliefnest.errors import InputError, PathError, TickError
-from beliefnest.facts.kinds import GoalCondition
+from beliefnest.facts.kinds import StatedFact
 from beliefnest.facts.reading import PlainScene, conditions_of, fact_entry
 from beliefnest.minds.imagining.course_agreement import Tolerance
 from beliefnest.nest.face.given import tick_of, whole
@@ -16,7 +16,7 @@ from beliefnest.world.paths import BeliefPath
 
 _SUM_SLACK = 1e-9
 
-Evidence = Sequence[tuple[Sequence[GoalCondition], float]]
+Evidence = Sequence[tuple[Sequence[StatedFact], float]]
 """Conditions at the end of histories, each with the probability that it is mistaken."""
 
 
@@ -138,7 +138,7 @@ def _is_weight(value: object) -> bool:
 
 def goal_conditions(
     recording: Recording, entries: Mapping[str, Any] | Sequence[Mapping[str, Any]]
-) -> list[GoalCondition]:
+) -> list[StatedFact]:
     """Parse one condition, or a list of conditions, written as in goals."""
     listed = [entries] if isinstance(entries, Mapping) else entries
     is_list = isinstance(entries, Sequence) and not isinstance(entries, str)

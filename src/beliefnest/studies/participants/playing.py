@@ -144,7 +144,7 @@ def view_of(nest: Nest, path: str, start: int, shown: str) -> ParticipantView:
 def _judged(nest: Nest, item: Item) -> Judged:
     scenario = item.cell.scenario
     expectations = [
-        ExpectationOutcome(each, each.fact.instead(StateFacts(nest[each.path].state)))
+        ExpectationOutcome(each, each.fact.instead(StateFacts(nest[each.simulator].state)))
         for each in scenario.expectations
     ]
     return Judged(
