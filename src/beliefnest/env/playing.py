@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import msgspec
 
@@ -13,9 +13,11 @@ from beliefnest.episodes.decided import latest_end
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.skills.calls import Call
 from beliefnest.worlds.by_name import Worlds
 
+_MOST_SCENARIOS = 16
 _FAILED = ("no_way", "failed", "lost")
 
 
@@ -32,6 +34,11 @@ class Instances:
     load: Callable[[int], Task]
     rounds: int | None = None
     round_ticks: int | None = None
+    _scenarios: dict[bytes, Scenario] = field(default_factory=dict, repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[type["Instances"], tuple[object, ...]]:
+        """Leave out the scenarios that were read, in copies and files."""
+        return Instances, (self.load, self.rounds, self.round_ticks)
 
     def of(self, seed: int) -> Task:
         """Return the instance of a seed.
@@ -44,7 +51,18 @@ class Instances:
         task = self.load(seed)
         changes = {"rounds": self.rounds, "round_ticks": self.round_ticks}
         edits = {name: value for name, value in changes.items() if value is not None}
-        return replace(task, form=msgspec.structs.replace(task.form, **edits)) if edits else task
+        task = replace(task, form=msgspec.structs.replace(task.form, **edits)) if edits else task
+        self._share(task)
+        return task
+
+    def _share(self, task: Task) -> None:
+        """Let a task have the scenario of an equal one of the latest, which is then not read."""
+        content = msgspec.json.encode(task.form.scenario)
+        if content in self._scenarios:
+            vars(task)["scenario"] = self._scenarios.pop(content)
+        self._scenarios[content] = task.scenario
+        if len(self._scenarios) > _MOST_SCENARIOS:
+            del self._scenarios[next(iter(self._scenarios))]
 
 
 class Chooser:
