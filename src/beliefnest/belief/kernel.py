@@ -59,8 +59,8 @@ from beliefnest.belief.seeing import eye_of, sees_agent, sees_cell
 from beliefnest.perception.beams import Eye
 from beliefnest.perception.chunks import chunk_in, place_at
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
-from beliefnest.perception.options import HEAR_ALL, SenseLimits
-from beliefnest.perception.percept import perceives
+from beliefnest.perception.options import SenseLimits
+from beliefnest.perception.percept import is_common, perceives
 from beliefnest.perception.rays import GridCell, RayScene, lower, upper
 from beliefnest.world.event_kinds import Sense
 from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
@@ -68,6 +68,7 @@ from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
 _WORD = 64
 _ABSENT, _STILL, _MOVED = 0, 1, 2
 _perceives = inlined(perceives)
+_is_common = inlined(is_common)
 
 
 @merged
@@ -482,14 +483,14 @@ def _observe_chunks(
 
 @inlined
 def _is_common_ground(senses: SenseLimits, facts: EntryFacts, event: int, me: int) -> bool:
-    """Return True if everybody who perceives an utterance credits agent `me` with hearing it.
+    """Return True if everybody who perceives an event credits agent `me` with perceiving it.
 
     Presence does not matter then (section 5.5).
     """
-    to = facts.event_to[event]
+    to, is_own = facts.event_to[event], facts.event_actor[event] == me
     if to != NOBODY:
-        return bool(me == to or me == facts.event_actor[event])
-    return bool(senses.hearing == HEAR_ALL or facts.event_actor[event] == me)
+        return bool(me == to or is_own)
+    return _is_common(senses, facts.event_sense[event], is_own)
 
 
 @inlined
@@ -556,7 +557,7 @@ def _update_absent(
 ) -> None:
     """Update a node whose owner is not present in the parent.
 
-    Nothing stays current, and the owner is credited with nothing but utterances that are common
+    Nothing stays current, and the owner is credited with nothing but events that are common
     ground (sections 5.2 and 5.5).
     """
     for who in range(looks.pose.shape[1]):
@@ -568,10 +569,9 @@ def _update_absent(
     me = whole(looks.agent[node])
     first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
-        is_heard = facts.event_sense[event] == Sense.HEARING
-        if is_heard and _is_common_ground(senses, facts, event, me):
-            heard = changes.perceived[event - first_event, looks.parent[node]]
-            changes.perceived[event - first_event, node] = heard
+        if _is_common_ground(senses, facts, event, me):
+            perceived = changes.perceived[event - first_event, looks.parent[node]]
+            changes.perceived[event - first_event, node] = perceived
 
 
 @inlined

@@ -39,7 +39,7 @@ class SenseLimits(NamedTuple):
         far: Greatest visible distance, blocks, infinite if there is no limit.
         cos_half: Cosine of half the field of view; -2: in all directions.
         hearing: One of `HEAR_ALL`, `HEAR_SEEN`, `HEAR_NEAR`.
-        radius: Greatest distance of hearing, blocks, for `HEAR_NEAR`.
+        radius: Greatest distance of hearing, blocks; infinite unless it is `HEAR_NEAR`.
         negative: True if a pose becomes unknown when its place is seen empty.
     """
 
@@ -173,7 +173,7 @@ class Perception(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             far,
             cos_half,
             {"global": HEAR_ALL, "sight": HEAR_SEEN}.get(str(hearing), HEAR_NEAR),
-            hearing.blocks if isinstance(hearing, Radius) else 0.0,
+            hearing.blocks if isinstance(hearing, Radius) else math.inf,
             self.negative_evidence,
         )
 

@@ -34,12 +34,21 @@ def perceives(
         away: Distance between the feet of both, blocks; infinite if it does not know the actor's.
     """
     if sense == Sense.HEARING:
-        if limits.hearing == HEAR_ALL:
-            return True
         return sees_actor if limits.hearing == HEAR_SEEN else away <= limits.radius
     if sense == Sense.PLACE:
         return sees_place
     return sees_actor if sense == Sense.ACTOR else False
+
+
+def is_common(limits: SenseLimits, sense: int, is_own: bool) -> bool:
+    """Return True if whoever perceives an event credits an agent with it, present or not.
+
+    Args:
+        limits: Options of perception.
+        sense: As for `perceives`.
+        is_own: True if the agent is the actor.
+    """
+    return sense == Sense.HEARING and (is_own or limits.hearing == HEAR_ALL)
 
 
 class Gaze(NamedTuple):

@@ -120,8 +120,8 @@ class EventKind(StrEnum):
 
     @property
     def is_act(self) -> bool:
-        """True for acts, which others perceive when they see the actor."""
-        return self.traits.sense is Sense.ACTOR
+        """True for acts, which an agent does with its body."""
+        return not self.is_speech and self.traits.sense is not Sense.PLACE
 
     @property
     def is_speech(self) -> bool:
