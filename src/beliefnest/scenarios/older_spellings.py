@@ -9,8 +9,8 @@ from beliefnest.scenarios.document import Document, YamlNode
 _OLD_WITHIN = 2.0
 """Distance that expectations had where none was given."""
 
-_UNKNOWN = {"agent": ("at", "items"), "block": ("state", "like"), "sign": ("text",)}
-"""Keys of a fact by its subject. Without any of them, an expectation meant something unknown."""
+_UNKNOWN = {"agent": "at", "block": "state", "sign": "text"}
+"""Property of a subject that was unknown if an expectation said nothing else of it."""
 
 _ALTERED: tuple[tuple[str, dict[str, str], dict[Any, YamlNode]], ...] = (
     ("blocks", {"at": "block", "block": "state"}, {}),
@@ -78,10 +78,10 @@ class _Spelling:
             self._note("'at' for 'position'", node.value["position"])
             if entry["at"].value is not None and not _has(base, "within", "position"):
                 entry.setdefault("within", self._old_within(node, entry))
-        for subject, keys in _UNKNOWN.items():
-            if subject in entry and base is None and not entry.keys() & {*keys}:
-                entry[keys[0]] = YamlNode(None)
-                self._note(f"'{keys[0]}: null' for what is unknown of the {subject}", node)
+        for subject, key in _UNKNOWN.items():
+            if subject in entry and base is None and entry.keys() <= {subject, "path", "label"}:
+                entry[key] = YamlNode(None)
+                self._note(f"'{key}: null' for what is unknown of the {subject}", node)
         return replace(node, value=entry)
 
     def _walk(self, node: YamlNode, base: YamlNode | None) -> YamlNode:
