@@ -31,7 +31,10 @@ QUICK = (
         f"tests/timeline/test_{name}.py"
         for name in ("codec", "compare", "export", "journal", "trace")
     ),
-    *(f"tests/world/test_{name}.py" for name in ("claims", "registry", "terrain", "texts")),
+    *(
+        f"tests/world/test_{name}.py"
+        for name in ("claims", "event_words", "registry", "terrain", "texts")
+    ),
     *(f"tests/worlds/test_{name}.py" for name in ("double_chests", "same_deeds")),
     "tests/worlds/scripted/test_world.py",
 )

@@ -10,7 +10,7 @@ of condition 1b, in `Nodes`.
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,7 @@ from beliefnest.world.array_types import Flags
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.double_chests import believed_container_at
 from beliefnest.world.event_kinds import EventKind
+from beliefnest.world.registry import parse_state
 from beliefnest.world.signs import plain_state, text_of
 from beliefnest.world.values import Event, Items, Sign
 
@@ -33,42 +34,39 @@ Numbers = npt.NDArray[np.int64]
 
 
 class Verdict(StrEnum):
-    """Verdict of a node on a claim: taken up or not, and by which rule of semantics, section 8."""
+    """Verdict of a node on a claim: taken up or not, and by which rule of semantics, section 8.
+
+    Attributes:
+        condition: The number of the rule in section 8 that decided; None: no such rule did.
+    """
+
+    condition: str | None
+
+    def __new__(cls, name: str, condition: str | None = None) -> Self:
+        """Return a member with the rule that decides so."""
+        verdict = str.__new__(cls, name)
+        verdict._value_, verdict.condition = name, condition
+        return verdict
 
     NOT_HEARD = "not heard"
     OFF = "off"
     TAKEN_UP = "taken up"
     OWN_PLACE = "own place"
-    SEES_OTHERWISE = "0"
-    SEES_KNOWN = "1a known"
-    SEES_CLAIMED = "1a claimed"
-    NO_CHANCE = "1b"
-    WORD = "3"
-    LEARNT_NOTHING = "3 grace"
-    NOT_SINCERE = "3 sincere"
-    SPEAKER = "4"
+    SEES_OTHERWISE = "0", "0"
+    SEES_KNOWN = "1a known", "1a"
+    SEES_CLAIMED = "1a claimed", "1a"
+    NO_CHANCE = "1b", "1b"
+    WORD = "3", "3"
+    LEARNT_NOTHING = "3 grace", "3"
+    NOT_SINCERE = "3 sincere", "3"
+    SPEAKER = "4", "4"
 
     @property
     def believed(self) -> bool:
         """True if the node believes the claim from now on."""
         return self in (Verdict.TAKEN_UP, Verdict.WORD)
 
-    @property
-    def condition(self) -> str | None:
-        """The number of the rule in section 8 that decided; None: no such rule did."""
-        return _CONDITIONS.get(self)
 
-
-_CONDITIONS = {
-    Verdict.SEES_OTHERWISE: "0",
-    Verdict.SEES_KNOWN: "1a",
-    Verdict.SEES_CLAIMED: "1a",
-    Verdict.NO_CHANCE: "1b",
-    Verdict.WORD: "3",
-    Verdict.LEARNT_NOTHING: "3",
-    Verdict.NOT_SINCERE: "3",
-    Verdict.SPEAKER: "4",
-}
 _VERDICTS = tuple(Verdict)
 _CODES = {verdict: code for code, verdict in enumerate(_VERDICTS)}
 
@@ -425,11 +423,10 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
     """
     registry, old = context.registry, context.block(believed)
     state = registry.state_id(text)
-    name = registry.name(state)
-    if believed < 0 or context.block_name(believed) != name:
+    if believed < 0 or context.block_name(believed) != registry.name(state):
         return state
-    claimed = [pair.split("=") for pair in text[len(name) + 1 : -1].split(",") if pair]
-    state = registry.changed(plain_state(old), **dict(claimed))
+    _, claimed = parse_state(text)
+    state = registry.changed(plain_state(old), **claimed)
     if not isinstance(old, Sign):
         return state
     return context.number(Sign(state, old.text), context.claims_on(believed))

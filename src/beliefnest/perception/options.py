@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, get_args
 
 import msgspec
 
@@ -11,6 +11,7 @@ from beliefnest.errors import InputError
 from beliefnest.world.forms import note
 from beliefnest.world.limits import FARTHEST
 from beliefnest.world.texts import quoted
+from beliefnest.world.words import listed
 
 ContainerMode = Literal["opaque", "transparent"]
 Testimony = Literal["none", "accept", "informed"]
@@ -142,14 +143,11 @@ class Perception(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
                 f"field_of_view is {quoted(self.field_of_view)} degrees; it must be above 0 and "
                 "up to 360"
             )
-        if self.containers not in ("opaque", "transparent"):
-            raise InputError(
-                f"containers is {quoted(self.containers)}; it must be 'opaque' or 'transparent'"
-            )
-        if self.testimony not in ("none", "accept", "informed"):
-            raise InputError(
-                f"testimony is {quoted(self.testimony)}; it must be 'none', 'accept' or 'informed'"
-            )
+        for name, kind in (("containers", ContainerMode), ("testimony", Testimony)):
+            value, choices = getattr(self, name), get_args(kind)
+            if value not in choices:
+                words = listed([repr(choice) for choice in choices], "or")
+                raise InputError(f"{name} is {quoted(value)}; it must be {words}")
         if not isinstance(self.grace, int) or isinstance(self.grace, bool) or self.grace < 0:
             raise InputError(
                 f"grace is {quoted(self.grace)}; it must be a whole number of ticks from 0"

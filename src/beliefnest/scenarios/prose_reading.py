@@ -8,8 +8,8 @@ actor, and credits another with that if the text lets it see the other as well.
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
 
+from beliefnest.perception.options import Testimony
 from beliefnest.world.words import titled
 
 _SENTENCE = re.compile(r"(?:[^.“]|“[^”]*[^.!?”]”)*(?:“[^”]*[.!?]”|[.])")
@@ -357,9 +357,7 @@ def _bare(thing: str) -> str:
     return thing.removeprefix("the ").casefold()
 
 
-def read_places(
-    text: str, path: Sequence[str], item: str, testimony: Literal["none", "accept", "informed"]
-) -> frozenset[str]:
+def read_places(text: str, path: Sequence[str], item: str, testimony: Testimony) -> frozenset[str]:
     """Return where an agent believes an item, as far as a story alone says it; empty: nowhere.
 
     Args:
@@ -382,7 +380,7 @@ def read_contents(
     path: Sequence[str],
     container: str,
     items: Iterable[str],
-    testimony: Literal["none", "accept", "informed"],
+    testimony: Testimony,
 ) -> frozenset[str]:
     """Return those of some items that an agent believes in a container, as a story alone says it.
 
@@ -401,9 +399,7 @@ def read_contents(
     )
 
 
-def read_last_seen(
-    text: str, path: Sequence[str], thing: str, testimony: Literal["none", "accept", "informed"]
-) -> str:
+def read_last_seen(text: str, path: Sequence[str], thing: str, testimony: Testimony) -> str:
     """Return where an agent was last seen, or what a sign was last seen to say, in a belief.
 
     Args:

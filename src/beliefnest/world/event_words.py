@@ -274,7 +274,7 @@ Announcement = tuple[str, ...]
 def announced(events: Iterable[_Event], me: str) -> tuple[Announcement, ...]:
     """Return the events of its bot by which an agent's program learns what the agent perceived.
 
-    Speech has those of Mineflayer; an event of another kind has its name, its actor and its text.
+    Speech has those of Mineflayer; an event of another kind has its name, its actor and its words.
     """
     return tuple(
         announcement
@@ -287,7 +287,7 @@ def announced(events: Iterable[_Event], me: str) -> tuple[Announcement, ...]:
 def _announced(event: _Event, me: str) -> Iterator[Announcement]:
     actor, text, to = event.actor or "", str(event.detail.get("text", "")), event.detail.get("to")
     if event.kind is not EventKind.CHAT:
-        yield (event.kind.value, actor, text)
+        yield (event.kind.value, actor, happens(event, {}))
     elif to is None:
         yield from (("chat", actor, text), ("messagestr", f"<{actor}> {text}"))
     elif to == me:

@@ -23,6 +23,7 @@ class KnownWorld {
     this.states = states
     // Block objects that were asked for, by place and index in the chunks of `states`.
     this.blocks = new Array(states.rows.length).fill(null)
+    this.signs = []
     // Texts of signs by position as a text.
     this.texts = new Map()
     // The raycast function follows rays through this world's `getBlock`.
@@ -68,10 +69,9 @@ class KnownWorld {
 
   /** Set the texts of all signs, as [x, y, z, text]. */
   readSigns (signs) {
-    const forgetAll = () => { for (const key of this.texts.keys()) this.forget(...key.split(',').map(Number)) }
-    forgetAll()
+    for (const [x, y, z] of [...this.signs, ...signs]) this.forget(x, y, z)
+    this.signs = signs
     this.texts = new Map(signs.map(([x, y, z, text]) => [`${x},${y},${z}`, text]))
-    forgetAll()
   }
 
   /**
