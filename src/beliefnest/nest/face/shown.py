@@ -366,8 +366,8 @@ class ShownSimulator(ABC):
     ) -> "Figure":
         """Return a drawing of the simulator's state; see `Nest.figure`."""
         with self._recording.turn:
-            scenes = part("scenes")(self._recording, [self], against, sight, height)
-            figure: Figure = part("figure")(scenes, inference, steps, self._tick)
+            scenes = part("drawing").scenes_of(self._recording, [self], against, sight, height)
+            figure: Figure = part("drawing").figure_with(scenes, inference, steps, self._tick)
             return figure
 
     def __repr__(self) -> str:
@@ -486,7 +486,7 @@ class ShownNest:
         """
         scenes = self.scenes(paths, tick, against, sight=sight, height=height)
         then = self._tick if tick is None else tick
-        figure: Figure = part("figure")(scenes, inference, steps, then)
+        figure: Figure = part("drawing").figure_with(scenes, inference, steps, then)
         return figure
 
     def scenes(
@@ -505,7 +505,8 @@ class ShownNest:
         with recording.turn:
             names = [parse_path(path, recording.agents) for path in wanted]
             shown = [PastSimulator(recording, path, then) for path in names]
-            scenes: tuple[Scene, ...] = part("scenes")(recording, shown, against, sight, height)
+            scenes_of = part("drawing").scenes_of
+            scenes: tuple[Scene, ...] = scenes_of(recording, shown, against, sight, height)
             return scenes
 
     @in_turn
@@ -542,7 +543,7 @@ class ShownNest:
             UnknownNameError: There is no such item.
         """
         followed = (container, item, agent, block)
-        figure: Figure = part("plot")(self._recording, followed, paths, self._tick)
+        figure: Figure = part("plotting").plot_of(self._recording, followed, paths, self._tick)
         return figure
 
     @in_turn

@@ -199,5 +199,4 @@ class TimelineState(NodeView):
         return f"<state of {path_text(self.path)} at tick {self.tick}: {state_words(self)}>"
 
     def _repr_html_(self) -> str:
-        text: str = part("state_figure")(self)._repr_html_()
-        return text
+        return str(part("drawing").figure_of_state(self)._repr_html_())
