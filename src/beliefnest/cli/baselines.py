@@ -8,7 +8,7 @@ from typing import Any
 
 from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.options import PlayOptions
-from beliefnest.cli.study import played
+from beliefnest.cli.playing import playing
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.shortcuts import CHANCE, rules_of, trained_rule
 from beliefnest.episodes.task import Task
@@ -107,8 +107,9 @@ def _hides_goals(name: str) -> bool:
 
 def _summary(study: Study, options: PlayOptions, part: str) -> list[dict[str, Any]]:
     """Return the summary of one study, in a folder of its own."""
-    folder = None if options.out is None else options.out / part
-    with played(study, "baselines", options.jobs, folder) as result:
+    own = None if options.out is None else options.out / part
+    with playing("baselines", own) as (folder, on_progress):
+        result = study.run(folder, options.jobs, on_progress=on_progress)
         failed = [row["why_not"] for row in result.rows if row["outcome"] == "error"]
         if failed:
             raise ModelError(f"{len(failed)} episodes have no result; the first: {failed[0]}")

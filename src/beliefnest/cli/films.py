@@ -69,8 +69,8 @@ def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
     with playing(FILMS, folder) as (place, on_progress):
         result = play_suite(place, FILM_KIND, cells, about, (), on_progress)
     complete = [row for row in result.rows if row["model"] is not None]
-    rows = msgspec.convert(complete, list[FilmRow])
-    judged = {each: [row for row in rows if row.variant == _key(each)] for each in _MODELS}
+    own = msgspec.convert(complete, list[FilmRow])
+    judged = {each: [row for row in own if row.variant == _key(each)] for each in _MODELS}
     write_tables(result)
     report = _report(options, films, judged, parameters)
     report["files"] = [str(folder / "rows.csv"), *_write(folder, options, judged)]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.cli.console import print_report, result_table
-from beliefnest.cli.study import played
+from beliefnest.cli.playing import playing
 from beliefnest.errors import InputError
 from beliefnest.files import replace_file
 from beliefnest.studies.study import Study
@@ -107,7 +107,8 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
 
 def _played(study: Study, jobs: int, title: str) -> tuple[list[dict[str, Any]], float]:
     started = time.perf_counter()
-    with played(study, title, jobs) as result:
+    with playing(title) as (folder, on_progress):
+        result = study.run(folder, jobs, on_progress=on_progress)
         took = result.folder.seconds()
         rows = [{**row, "wall_seconds": took[row["cell"]]} for row in result.rows]
     return rows, time.perf_counter() - started

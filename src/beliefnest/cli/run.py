@@ -5,9 +5,11 @@ import math
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from dataclasses import replace
 from datetime import datetime
+from functools import partial
+from pathlib import Path
 from typing import Any, Literal
 
 from rich.text import Text
@@ -24,9 +26,11 @@ from beliefnest.cli.streams import noted_warnings
 from beliefnest.cli.visits import check_visits
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
 from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.failures import UnavailableModelError
 from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.pictures.overview import overview
+from beliefnest.plan.jobs import run_cells
 from beliefnest.plan.terms import Terms
 from beliefnest.plan.worker import Worker
 from beliefnest.scenarios.judging import without_result_words
@@ -34,7 +38,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.table import lost
 from beliefnest.timeline.store import Journal
 from beliefnest.world.seeds import checked_seed
-from beliefnest.worlds.minecraft.launching import Launch
+from beliefnest.worlds.minecraft.launching import Launch, ahead
 from beliefnest.worlds.names import check_world
 
 _MOST_TIMES = 10_000
@@ -87,19 +91,17 @@ def _run_in(
     """Run the conditions in an open folder; return the exit status."""
     first, settings = scenarios[0], options.settings
     cells = plan_run_cells(scenarios, settings, folder, options.embody or ())
-    run = _Run(options, folder)
+    run = _Run(options, folder, cells)
     status: RunStatus = "failed"
+    worker = partial(Worker, launch=launch, seed=options.seed, caught=ModelError)
     try:
         with (
             noted_warnings() as warned,
-            ExitStack() as stack,
             kernels_ahead(),
+            # It is told with the other failures.
+            suppress(UnavailableModelError),
         ):
-            worker = Worker(stack, launch, options.seed, caught=ModelError)
-            for cell in cells:
-                run.do(cell, worker)
-                if run.unavailable:
-                    break
+            run_cells(cells, run, run.terms, 1, "loky", lambda progress: None, ahead, worker)
         if len(cells[0].pictures) == len(cells) > 1:
             shown = cells[0].pictures[: len(scenarios)]
             overview(shown, first.description or first.name).save(folder.picture)
@@ -108,25 +110,30 @@ def _run_in(
         status = "interrupted"
         raise
     finally:
-        report = report_json(first.name, settings, status, run.results, run.failures)
-        report["versions"] = _versions(cells)
-        report["scores"] = score_runs(run.results, run.failures)
+        ended = run.ended()
+        results = [result for _, result in ended]
+        report = report_json(first.name, settings, status, results, run.failures)
+        versions = _versions(cells)
+        report |= {"versions": versions, "scores": score_runs(results, run.failures)}
         folder.write_report(report)
-        folder.write_page(_page(report, options, first))
-    text = report_text(_parts(run, cells, warned))
+        about = {"name": options.scenario, "description": first.description}
+        page = report_html(report, about=about, conditions=first.conditions, versions=versions)
+        folder.write_page(page)
+    text = report_text(_parts(run, cells, ended, warned))
     folder.write_summary(text)
     sys.stdout.write(json.dumps(report, indent=2) + "\n" if options.json else text)
     if run.failures:
-        missing = len(cells) - len(run.results)
+        missing = len(cells) - len(results)
         raise ModelError(_failures_text(run.failures, missing, len(cells), folder))
-    return 0 if all(result["ok"] for result in run.results) else 1
+    return 0 if all(result["ok"] for result in results) else 1
 
 
 class _Run:
-    """A run in progress: its folder, its terms, and its results so far."""
+    """A run in progress as a folder of cells: each has its own folder, and failures have none."""
 
-    def __init__(self, options: RunOptions, folder: RunFolder) -> None:
+    def __init__(self, options: RunOptions, folder: RunFolder, cells: Sequence[RunCell]) -> None:
         self.folder = folder
+        self._cells = {cell.key.name: cell for cell in cells}
         terms = Terms(
             answers=options.answers or folder.answers,
             ledger=folder.ledger,
@@ -138,31 +145,41 @@ class _Run:
         connection = terms.connection(options.model_settings.answer_limits)
         # Answers of a file go on from cell to cell.
         models = {name: open_model(name, os.environ, connection) for name in options.asked_models}
-        self._terms = replace(terms, models=models)
-        self.rows: list[OutcomeRow] = []
-        self.results: list[dict[str, Any]] = []
+        self.terms = replace(terms, models=models)
         self.failures: list[dict[str, object]] = []
-        self.unavailable = False
 
-    def do(self, cell: RunCell, worker: Worker) -> None:
-        """Play a cell and keep its result, unless an earlier part of the run did so."""
-        result = cell.place.result()
-        if result is None:
-            content, why = worker.content(cell, self._terms)
-            self.unavailable = bool(why)
-            if content["error"] is not None:
-                outcome = lost(content, is_judged=True)["outcome"]
-                key = {
-                    "condition": cell.key.condition,
-                    "model": cell.key.model,
-                    "seed": cell.key.seed,
+    @property
+    def ledger(self) -> Path:
+        """File with the usage of each answer."""
+        return self.folder.ledger
+
+    def cell(self, name: str) -> dict[str, Any] | None:
+        """Return the result of a cell, also of an earlier part of the run; None: it has none."""
+        result = self._cells[name].place.result()
+        return None if result is None else {"error": None, **result}
+
+    def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
+        """Keep the reason of a cell without a result; the cell has written its result itself."""
+        if content["error"] is not None:
+            key = self._cells[name].key
+            self.failures.append(
+                {
+                    "condition": key.condition,
+                    "model": key.model,
+                    "seed": key.seed,
+                    "error": content["error"],
+                    "kind": content["kind"],
+                    "outcome": lost(content, is_judged=True)["outcome"],
                 }
-                self.failures.append({**key, **content, "outcome": outcome})
-                return
-            result = cell.place.result()
-            assert result is not None
-        self.results.append(result)
-        self.rows.append(OutcomeRow.of(cell.scenario, result))
+            )
+
+    def note_seconds(self, name: str, seconds: float) -> None:
+        """Note nothing: the result of a cell has its time."""
+
+    def ended(self) -> list[tuple[RunCell, dict[str, Any]]]:
+        """Return the cells that have a result, each with it."""
+        results = ((cell, cell.place.result()) for cell in self._cells.values())
+        return [(cell, result) for cell, result in results if result is not None]
 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
@@ -202,15 +219,6 @@ def _check_numbers(options: RunOptions) -> None:
         raise InputError(f"the model {twice[0]} is named twice; use --repeat to ask it again")
 
 
-def _page(report: Mapping[str, Any], options: RunOptions, scenario: Scenario) -> str:
-    return report_html(
-        report,
-        about={"name": options.scenario, "description": scenario.description},
-        conditions=scenario.conditions,
-        versions=report["versions"],
-    )
-
-
 def _versions(cells: Sequence[RunCell]) -> Mapping[str, str]:
     """Return versions of programs by name, from the first run file of the run.
 
@@ -233,17 +241,24 @@ def _failures_text(
     return f"{text}; run again with --out {folder.path} to go on; the first: {failures[0]['error']}"
 
 
-def _parts(run: _Run, cells: Sequence[RunCell], warned: Mapping[str, str]) -> Iterator[Printed]:
+def _parts(
+    run: _Run,
+    cells: Sequence[RunCell],
+    ended: Sequence[tuple[RunCell, dict[str, Any]]],
+    warned: Mapping[str, str],
+) -> Iterator[Printed]:
+    results = [result for _, result in ended]
     for number, about in cells[0].scenario.conditions.items():
         if any(cell.scenario.condition == number for cell in cells):
             yield Text(f"condition {number}: {about}")
     # The results of each condition, or scores if there are several models or repeats.
-    if cells[0].is_flat and len(run.rows) == len(cells):
-        yield outcome_table(run.rows, stdout())
-        yield from (line for row in run.rows for line in row.notes)
+    if cells[0].is_flat and len(ended) == len(cells):
+        rows = [OutcomeRow.of(cell.scenario, result) for cell, result in ended]
+        yield outcome_table(rows, stdout())
+        yield from (line for row in rows for line in row.notes)
     else:
-        yield score_table(cells[0].scenario.name, score_runs(run.results, run.failures))
-    yield from (*_unread(run.results), *warned.values())
+        yield score_table(cells[0].scenario.name, score_runs(results, run.failures))
+    yield from (*_unread(results), *warned.values())
     yield f"recorded in {run.folder.path}"
 
 

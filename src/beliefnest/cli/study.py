@@ -5,7 +5,6 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from rich.table import Table
 
 from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import StudyOptions
-from beliefnest.cli.playing import playing, status_of, write_tables
+from beliefnest.cli.playing import status_of, write_tables
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.streams import noted_warnings
 from beliefnest.cli.terminal_text import printable
@@ -31,7 +30,6 @@ _MOST_TOLD = 10
 _MANY = 100
 """Number of variations whose check takes no time that needs a report."""
 _REPORTS = 10
-_LINES = 20
 """Number of progress lines of commands that play studies of their own."""
 
 
@@ -83,15 +81,6 @@ def run_study(options: StudyOptions) -> int:
     write_files(result, by)
     print_report(_report(result, by), _parts(result, by, warned), as_json=options.json)
     return status_of(result)
-
-
-@contextmanager
-def played(
-    study: Study, title: str, jobs: int, folder: Path | None = None
-) -> Iterator[StudyResult]:
-    """Play a study, see `playing`."""
-    with playing(title, folder) as (place, on_progress):
-        yield study.run(place, jobs, on_progress=on_progress)
 
 
 def _shard(text: str | None) -> tuple[int, int] | None:

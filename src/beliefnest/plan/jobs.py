@@ -71,6 +71,7 @@ class StudyProgress:
 
 
 OnStudyProgress = Callable[[StudyProgress], None]
+MakeWorker = Callable[[ExitStack], Worker]
 
 
 def run_cells(
@@ -81,6 +82,7 @@ def run_cells(
     backend: str,
     on_progress: OnStudyProgress,
     ahead: Ahead,
+    worker: MakeWorker = Worker,
 ) -> None:
     """Play the cells without a result, and write each result as soon as it is known.
 
@@ -94,6 +96,7 @@ def run_cells(
         backend: One of `BACKENDS`.
         on_progress: Function that receives the progress.
         ahead: Function that launches the world of a process before the process plays.
+        worker: Function that makes the worker of this process if no other one plays.
 
     Raises:
         InputError: `jobs` is not a whole number, at least 1.
@@ -107,26 +110,33 @@ def run_cells(
     if backend not in BACKENDS:
         raise UnknownNameError(f"there is no backend {backend!r}; there are {', '.join(BACKENDS)}")
     left = [cell for cell in cells if _is_open(folder, cell)]
-    progress = _Counting(folder, len(cells), len(cells) - len(left), on_progress)
+
+    def progressed(done: int, failed: int) -> StudyProgress:
+        progress = StudyProgress(len(cells), done, failed, spent_in(folder.ledger))
+        on_progress(progress)
+        return progress
+
+    progress = progressed(len(cells) - len(left), 0)
     keys = {cell.key.name: cell.key for cell in left}
-    with contextlib.closing(_results(left, terms, jobs, backend, ahead)) as results:
+    with contextlib.closing(_results(left, terms, jobs, backend, ahead, worker)) as results:
         warned: set[str] = set()
         for result in results:
             for each in result.warnings:
                 if each.subject not in warned:
                     warnings.warn(each, stacklevel=2)
                 warned.add(each.subject)
-            if result.unavailable:
-                raise UnavailableModelError(
-                    f"{result.unavailable}; {counted(progress.left, 'cell')} left to play: run the "
-                    "same study again after that"
-                )
             key = keys[result.name]
             folder.note_seconds(result.name, result.seconds)
             folder.write_cell(
                 result.name, {"key": key.content_json(), "seed": key.seed, **result.content}
             )
-            progress.count(result)
+            if result.unavailable:
+                raise UnavailableModelError(
+                    f"{result.unavailable}; {counted(progress.left, 'cell')} left to play: run the "
+                    "same study again after that"
+                )
+            has_result = result.content["error"] is None
+            progress = progressed(progress.done + has_result, progress.failed + (not has_result))
 
 
 def _is_open(folder: CellFolder, cell: Keyed) -> bool:
@@ -134,45 +144,19 @@ def _is_open(folder: CellFolder, cell: Keyed) -> bool:
     return record is None or record["error"] is not None
 
 
-class _Counting:
-    """Counter of finished cells that reports progress."""
-
-    def __init__(
-        self, folder: CellFolder, total: int, done: int, on_progress: OnStudyProgress
-    ) -> None:
-        self._folder = folder
-        self._total = total
-        self._done = done
-        self._failed = 0
-        self._tell = on_progress
-        self._say()
-
-    def count(self, result: CellResult) -> None:
-        """Count one more result."""
-        if result.content["error"] is None:
-            self._done += 1
-        else:
-            self._failed += 1
-        self._say()
-
-    @property
-    def left(self) -> int:
-        """Number of cells without a result in this run."""
-        return self._total - self._done - self._failed
-
-    def _say(self) -> None:
-        spent = spent_in(self._folder.ledger)
-        self._tell(StudyProgress(self._total, self._done, self._failed, spent))
-
-
 def _results(
-    cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str, ahead: Ahead
+    cells: Sequence[Keyed],
+    terms: Terms,
+    jobs: int,
+    backend: str,
+    ahead: Ahead,
+    make_worker: MakeWorker,
 ) -> _Results:
     if not cells:
         return
     if backend == "loky" and (jobs == 1 or _are_few(cells)):
         with ExitStack() as stack:
-            worker = Worker(stack)
+            worker = make_worker(stack)
             for cell in cells:
                 yield worker.play(cell, terms)
         return

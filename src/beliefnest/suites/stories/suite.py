@@ -89,10 +89,8 @@ def answer_story(
         for item, begun, answer in zip(asked.items, asked_in(asked), answers, strict=False):
             other = without.get(item.question)
             ok = answer.text == item.expected
-            why, fault = (), None
-            if not ok:
-                fault = data_fault(asked.story, item.question, item.expected)
-                why = explain_answer(played, item.question, answer, item.expected)
+            fault = None if ok else data_fault(asked.story, item.question, item.expected)
+            why = () if ok else explain_answer(played, item.question, answer, item.expected)
             judged.append(
                 JudgedAnswer(
                     **begun,

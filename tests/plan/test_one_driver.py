@@ -1,0 +1,35 @@
+"""Everything that is played many times is a cell, and only the plan plays cells."""
+
+import ast
+from collections import defaultdict
+from pathlib import Path
+
+SOURCES = Path(__file__).parents[2] / "src" / "beliefnest"
+PLAYERS = {
+    # What plays once, and the cells that call it. An audit plays a story again under other rules.
+    "run_scenario": {"plan/scenario_cells.py"},
+    "answer_story": {"suites/stories/cells.py", "suites/stories/audit.py"},
+    "judge": {"suites/films/cells.py"},
+    # One loop over cells, in one process, in several, or on a cluster.
+    "Worker": {"plan/jobs.py", "plan/worker.py"},
+    "ProcessPoolExecutor": {"plan/processes.py"},
+    "Parallel": {"plan/jobs.py"},
+    # One ledger, beside the times of cells.
+    "SharedBudget": set(),
+    "append_line": {"plan/spending.py", "studies/study_folder.py"},
+    # What plays many: a run, a study, a study played again, a suite.
+    "run_cells": {
+        *("cli/run.py", "studies/study.py", "studies/reproducing.py", "suites/playing.py"),
+    },
+}
+
+
+def test_only_the_plan_plays_cells():
+    callers = defaultdict(set)
+    for module in SOURCES.rglob("*.py"):
+        if "node_modules" not in module.parts:
+            for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+                match node:
+                    case ast.Call(func=ast.Name(id=name)) if name in PLAYERS:
+                        callers[name].add(module.relative_to(SOURCES).as_posix())
+    assert {name: callers[name] for name in PLAYERS} == PLAYERS
