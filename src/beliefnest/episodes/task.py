@@ -11,6 +11,7 @@ import msgspec
 from beliefnest.episodes.task_form import TaskForm
 from beliefnest.episodes.tasks import generated, is_task, task_names
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
+from beliefnest.facts.reading import PlainScene
 from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.document_form import check_rules_form
 from beliefnest.scenarios.goals import Goal
@@ -186,7 +187,7 @@ class Task:
                 "(in a scenario under `episode`)"
             )
         try:
-            check_rules(self.form, self.agents, Box.between(*box))
+            check_rules(self.form, self.agents, PlainScene(self.agents, Box.between(*box)))
         except BeliefNestError as fault:
             raise ScenarioError(f"task {self.name}: {fault}") from None
 

@@ -62,7 +62,7 @@ class PlainScene:
 
     def fault(self, path: Where, message: str) -> InputError:
         """Return the error about a key."""
-        return InputError(message)
+        return InputError(f"{'.'.join(map(str, path))}: {message}" if path else message)
 
     def belief_path(self, path: Where, text: str) -> BeliefPath:
         """Return the agents of a belief path."""

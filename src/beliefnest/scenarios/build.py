@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from beliefnest.belief.grounds import InitialBelief
-from beliefnest.facts.reading import check_entry
 from beliefnest.importing import part
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.unique import unique_fault, unique_items
@@ -30,7 +29,7 @@ from beliefnest.scenarios.format import (
     StepEntry,
 )
 from beliefnest.scenarios.inferring import Inferring
-from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, rule_faults
+from beliefnest.scenarios.rules import EpisodeEntry, check_rules
 from beliefnest.scenarios.scene_check import scene_warnings
 from beliefnest.scenarios.space import (
     UNKNOWN,
@@ -234,26 +233,9 @@ class _Builder:
 
     def rules(self) -> EpisodeEntry | None:
         """Return the goals and rules of play, if the scenario has any."""
-        rules, agents = self._file.episode, self._snapshot.agents
-        if rules is None:
-            return None
-        goals: dict[KeyPath, GoalEntry] = {("goal",): rules.goal}
-        goals |= {("goals", name): goal for name, goal in rules.goals.items()}
-        goals |= {
-            ("possible_goals", agent, name): goal
-            for agent, possible in rules.possible_goals.items()
-            for name, goal in possible.items()
-        }
-        for path, goal in goals.items():
-            for key, entries in (("reach", goal.reach), ("never", goal.never)):
-                for number, entry in enumerate(entries):
-                    entries[number] = check_entry(
-                        entry, ("episode", *path, key, number), self.checks
-                    )
-        for path, message in rule_faults(rules, agents):
-            raise self._document.fault(("episode", *path), message)
-        with self._document.naming(("episode",)):
-            check_rules(rules, agents, self._snapshot.box)
+        rules = self._file.episode
+        if rules is not None:
+            check_rules(rules, self._snapshot.agents, self.checks, ("episode",))
         return rules
 
     def _step(self, number: int, entry: StepEntry) -> Step:

@@ -5,13 +5,11 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from beliefnest.errors import InputError
 from beliefnest.facts.kinds import FactEntry
-from beliefnest.facts.reading import PlainScene, check_entry, conditions_of
+from beliefnest.facts.reading import FactScene, Where, check_entry, conditions_of
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.forms import note
 from beliefnest.world.texts import quoted
-from beliefnest.world.values import Box
 
 
 class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -78,8 +76,6 @@ def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
     Raises:
         InputError: A condition is not valid.
     """
-    if entry.ticks is not None and not entry.reach:
-        raise InputError("a goal has `ticks` and nothing to `reach` within them")
     return Goal(
         tuple(each for one in entry.reach for each in conditions_of(one, agents)),
         tuple(each for one in entry.never for each in conditions_of(one, agents)),
@@ -87,14 +83,6 @@ def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
         entry.ticks,
         entry.helps,
     )
-
-
-def rule_faults(
-    entry: EpisodeEntry, agents: Collection[str]
-) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the faults of `helps` and of possible goals: the keys, and a message."""
-    yield from _faults_of_help(entry, agents)
-    yield from _faults_of_possible_goals(entry, agents)
 
 
 def _faults_of_help(
@@ -138,25 +126,45 @@ def _listed(agents: Collection[str]) -> str:
     return ", ".join(sorted(agents))
 
 
-def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
-    """Check goals and rules of play.
-
-    Raises:
-        InputError: They are not consistent.
-        PathError: The belief of a condition does not exist.
-        UnknownNameError: The item or block of a condition does not exist.
-    """
+def _faults_of_rules(
+    entry: EpisodeEntry, agents: Collection[str]
+) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Yield the faults of rules of play: the keys, and a message."""
+    yield from _faults_of_help(entry, agents)
+    yield from _faults_of_possible_goals(entry, agents)
     for name in sorted({*entry.players, *entry.goals, *entry.policies, *entry.talk}):
         if name not in agents:
-            raise InputError(f"{quoted(name)} is none of the agents {_listed(agents)}")
-    for path, message in rule_faults(entry, agents):
-        raise InputError(f"{'.'.join(path)}: {message}")
-    possible = [goal for goals in entry.possible_goals.values() for goal in goals.values()]
-    for goal in (entry.goal, *entry.goals.values(), *possible):
-        goal_of(goal, agents)
-        for condition in (*goal.reach, *goal.never):
-            check_entry(condition, (), PlainScene(agents, box))
-    for name in sorted(agents):
+            yield (), f"{quoted(name)} is none of the agents {_listed(agents)}"
         if name in entry.players and name in entry.policies:
             fault = "is one of `players` and has a policy in `policies`; remove one of the two"
-            raise InputError(f"{name} {fault}")
+            yield (), f"{name} {fault}"
+
+
+def check_rules(
+    entry: EpisodeEntry, agents: Collection[str], scene: FactScene, top: Where = ()
+) -> None:
+    """Check goals and rules of play; conditions that name half a container get the whole one.
+
+    Args:
+        entry: Goals and rules.
+        agents: Names of all agents.
+        scene: Checks of what the conditions name.
+        top: Place of the entry in a document.
+
+    Raises:
+        BeliefNestError: They are not consistent, or name something that does not exist.
+    """
+    goals: dict[Where, GoalEntry] = {("goal",): entry.goal}
+    goals |= {("goals", name): goal for name, goal in entry.goals.items()}
+    for agent, possible in entry.possible_goals.items():
+        goals |= {("possible_goals", agent, name): goal for name, goal in possible.items()}
+    for path, goal in goals.items():
+        for key, entries in (("reach", goal.reach), ("never", goal.never)):
+            for number, condition in enumerate(entries):
+                place = (*top, *path, key, number)
+                entries[number] = check_entry(condition, place, scene)
+        if goal.ticks is not None and not goal.reach:
+            fault = "stands in a goal that has nothing to `reach` within them"
+            raise scene.fault((*top, *path, "ticks"), fault)
+    for path, fault in _faults_of_rules(entry, agents):
+        raise scene.fault((*top, *path), fault)
