@@ -41,13 +41,18 @@ def test_a_fact_with_keys_that_do_not_fit_is_refused() -> None:
         ({"block": DOOR}, "makes no sense; give block and state.* or block and like$"),
         ({"agent": "ann", "at": [1, 1, 1], "withn": 2}, "'withn'; did you mean 'within'"),
         ({"container": CHEST, "itmes": {"apple": 1}}, "'itmes'; did you mean 'items'"),
+        ({"agent": "ann", "position": [1, 1, 1]}, "has the key 'position'; write 'at'$"),
+        ({"agent": "ann", "at": (6, 1)}, r"'at' cannot be \(6, 1\); it says: a block position, or"),
+        ({"agent": "ann", "at": DOOR, "within": -1}, "'within' cannot be -1; it says: greatest"),
+        ({"container": CHEST, "items": {"apple": "1"}}, "'items' cannot be .*; it says: item name"),
+        ("apple", "'apple' is no fact; give a mapping such as"),
         ({"heard": ""}, "^'heard' is empty; give part of an utterance$"),
         ({"not_heard": " "}, "^'not_heard' is empty; give part of an utterance$"),
         ({"block": DOOR, "like": SIGN, "property": "zz"}, "no block has the property 'zz'; give"),
         ({"block": DOOR, "like": SIGN, "property": "opne"}, "'opne'; did you mean open"),
     ],
 )
-def test_a_fact_that_makes_no_sense_is_told_what_to_give(given: dict[str, Any], told: str) -> None:
+def test_a_fact_that_makes_no_sense_is_told_what_to_give(given: object, told: str) -> None:
     with pytest.raises(BeliefNestError, match=told):
         fact_entry(given, SCENE)
 

@@ -8,13 +8,17 @@ import msgspec
 
 from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
 from beliefnest.facts.kinds import KINDS, Fact, FactEntry, StatedFact
-from beliefnest.world.forms import scene_kinds
+from beliefnest.world.forms import notes, scene_kinds
 from beliefnest.world.paths import BeliefPath, parse_path
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Items, Position, block_at
 from beliefnest.world.words import listed, nearest_or_all
 
-_SCENE_KINDS = scene_kinds(FactEntry)
+_SCENE_KINDS, _NOTES = scene_kinds(FactEntry), notes(FactEntry)
+
+FORMER = {"believed": "path", "position": "at", "place": "at"}
+"""Names of keys in earlier versions, or elsewhere in files, and what they are in facts."""
 
 Where = tuple[str | int, ...]
 """Keys and list indices from the top of a document to an entry or a value of it."""
@@ -126,14 +130,21 @@ def plain_entry(entry: object) -> FactEntry:
     Raises:
         InputError: The fact is malformed.
     """
-    try:
-        return msgspec.convert(entry, FactEntry)
-    except msgspec.ValidationError as fault:
-        fields = FactEntry.__struct_fields__
-        if isinstance(entry, Mapping) and (others := [key for key in entry if key not in fields]):
-            hint = nearest_or_all(str(others[0]), fields, "its keys are")
-            raise InputError(f"the fact {entry!r} has the key {others[0]!r}{hint}") from None
-        raise InputError(f"the fact {entry!r} is malformed: {fault}") from None
+    if not isinstance(entry, Mapping):
+        raise InputError(f"{entry!r} is no fact; give a mapping such as {{'heard': 'hello'}}")
+    for key, value in entry.items():
+        if key not in _NOTES:
+            former = f"; write {quoted(FORMER[key])}" if key in FORMER else ""
+            hint = former or nearest_or_all(str(key), [*_NOTES], "its keys are")
+            raise InputError(f"the fact {entry!r} has the key {key!r}{hint}")
+        try:
+            msgspec.convert({key: value}, FactEntry)
+        except msgspec.ValidationError:
+            says = _NOTES[key][:1].lower() + _NOTES[key][1:].removesuffix(".")
+            raise InputError(
+                f"the fact {entry!r}: {quoted(key)} cannot be {value!r}; it says: {says}"
+            ) from None
+    return msgspec.convert(entry, FactEntry)
 
 
 def fact_entry(entry: object, scene: PlainScene) -> FactEntry:

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from beliefnest.errors import InputError, ScenarioError
+from beliefnest.facts.reading import FORMER
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
 from beliefnest.scenarios.format import ScenarioFile, WrittenFile
 from beliefnest.scenarios.json_schema import allowed_keys, allowed_values, wanted_form
@@ -24,9 +25,6 @@ _F = TypeVar("_F", bound=ScenarioFile | WrittenFile)
 
 _LONGEST_FAULT = 160
 """Greatest number of characters of a fault that the validation found; it may quote the value."""
-
-_FORMER = {"believed": "path", "position": "at", "place": "at"}
-"""Names of keys in earlier versions, or elsewhere in the file, and what they are in facts."""
 
 _ASKED = "; a question leaves open how it is: write {path: PATH} with one thing of "
 _HOW = ("items", "at", "state", "text", "lacks")
@@ -182,8 +180,8 @@ def _hint(name: str, path: KeyPath) -> str:
         return f"; it stands under {quoted(inner[0])}"
     if "unknown" in allowed and name in _HOW:
         return f"{_ASKED}{', '.join(key for key in allowed if key not in ('path', 'unknown'))}"
-    if _FORMER.get(name) in allowed:
-        return f"; write {quoted(_FORMER[name])}"
+    if FORMER.get(name) in allowed:
+        return f"; write {quoted(FORMER[name])}"
     return nearest_or_all(name, allowed, "keys are")
 
 

@@ -1,5 +1,6 @@
 """Types of the keys in scenario and task files."""
 
+from collections.abc import Iterator
 from typing import Annotated, get_type_hints
 
 import msgspec
@@ -20,13 +21,19 @@ def note(text: str, scene: str | None = None) -> msgspec.Meta:
 
 def scene_kinds(form: type[msgspec.Struct]) -> dict[str, str]:
     """Return the kinds of the values in copies of a scene, by key, for keys that have a kind."""
-    hints = get_type_hints(form, include_extras=True)
-    return {
-        key: meta.extra["scene"]
-        for key, hint in hints.items()
-        for meta in getattr(hint, "__metadata__", ())
-        if isinstance(meta, msgspec.Meta) and meta.extra is not None
-    }
+    return {key: meta.extra["scene"] for key, meta in _metas(form) if meta.extra is not None}
+
+
+def notes(form: type[msgspec.Struct]) -> dict[str, str]:
+    """Return the descriptions of the keys."""
+    return {key: meta.description for key, meta in _metas(form) if meta.description is not None}
+
+
+def _metas(form: type[msgspec.Struct]) -> Iterator[tuple[str, msgspec.Meta]]:
+    for key, hint in get_type_hints(form, include_extras=True).items():
+        for meta in getattr(hint, "__metadata__", ()):
+            if isinstance(meta, msgspec.Meta):
+                yield key, meta
 
 
 _Whole = Annotated[int, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
