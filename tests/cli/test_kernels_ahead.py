@@ -26,9 +26,10 @@ def one(number: int) -> int:
     return 1
 
 @compiled
-def count(row, rounds: int) -> int:
+def count(row, rounds: int) -> float:
     for number in range(rounds):
         row[0] += 1
+        row[1] = 1.0 / (rounds - 2)
         row[0] += one(number)
     return row[0]
 """
@@ -45,12 +46,14 @@ def count(tmp_path, monkeypatch):
     del sys.modules["counting"]
 
 
-@pytest.mark.parametrize(("seconds", "compiles"), [(LONG, False), (1e-9, True)])
-def test_a_call_in_python_that_takes_too_long_leaves_no_trace(count, seconds, compiles):
+@pytest.mark.parametrize(
+    ("seconds", "rounds", "compiles"), [(LONG, 1, False), (1e-9, 1, True), (LONG, 2, True)]
+)
+def test_a_call_that_fails_in_python_leaves_no_trace(count, seconds, rounds, compiles):
     stand_ins = StandIns(seconds)
     token = INSTEAD.set(stand_ins.find)
     try:
-        assert count(np.array([40]), 1) == 42
+        assert count(np.array([40.0, 0.0]), rounds) == 40 + 2 * rounds
     finally:
         INSTEAD.reset(token)
         stand_ins.close()
@@ -81,7 +84,7 @@ def beliefs():
 
 
 def test_the_compiler_compiles_what_it_is_asked_for(count):
-    types = (numba.types.Array(numba.types.int64, 1, "C"), numba.types.int64)
+    types = (numba.types.Array(numba.types.float64, 1, "C"), numba.types.int64)
     compile_all(io.BytesIO(pickle.dumps(("counting", "count", types))))
     assert is_compiled(count)
 

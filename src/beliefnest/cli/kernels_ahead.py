@@ -87,7 +87,7 @@ class StandIns:
                 self._compiler.communicate()
 
     def _call(self, kernel: Any, function: Callable[..., Any], *args: Any) -> Any:
-        """Call a kernel in Python; undo what it did and call the compiled one if it takes long."""
+        """Call a kernel in Python; undo what it did and wait for the compiled one if that fails."""
         arrays = [each for each in _arrays(args) if each.flags.writeable]
         if sum(each.nbytes for each in arrays) > _MOST_BYTES:
             self._left = 0.0
@@ -97,7 +97,9 @@ class StandIns:
         try:
             with np.errstate(all="ignore"):
                 return function(*args)
-        except _SpentError:
+        except (_SpentError, ArithmeticError, ValueError):
+            # Machine code divides by zero and takes roots below it; Python does not.
+            self._until = 0.0
             for array, content in zip(arrays, before, strict=True):
                 array[...] = content
         finally:
