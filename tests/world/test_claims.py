@@ -94,8 +94,31 @@ def test_what_is_no_claim_is_refused(make: Callable[[], object], message: str) -
 
 
 @pytest.mark.parametrize(
+    ("fact", "claim"),
+    [
+        (
+            {"container": (3, 0, 3), "items": {"diamond": 1}},
+            bn.Claim.located("diamond", (3, 0, 3)),
+        ),
+        ({"container": (3, 0, 3), "lacks": "diamond"}, bn.Claim.absent("diamond", (3, 0, 3))),
+        ({"agent": "anne", "at": (3, 0, 3)}, bn.Claim.position("anne", (3.5, 0, 3.5))),
+        ({"block": (3, 0, 3), "state": "air"}, bn.Claim.block((3, 0, 3), "air")),
+    ],
+)
+def test_a_fact_can_be_claimed(fact: dict[str, Any], claim: bn.Claim) -> None:
+    there = world()
+    with bn.Nest(there) as nest:
+        there.say("sally", "x", claims=[fact, claim])
+        assert [made.claim for made in nest.claims()] == [claim, claim]
+
+
+@pytest.mark.parametrize(
     ("claim", "message"),
     [
+        ({"path": "/anne", "block": (3, 0, 3), "state": "air"}, "cannot be claimed; claim items"),
+        ({"heard": "hello"}, "'hello' was heard' cannot be claimed"),
+        ({"container": (3, 0, 3), "itmes": {}}, "'itmes'; did you mean 'items'"),
+        ({"container": (30, 0, 3), "items": {"diamond": 1}}, "outside the box"),
         (bn.Claim.located("diamond", (30, 0, 3)), "outside the box"),
         (bn.Claim.position("carol", (3, 0, 3)), "names an unknown agent; agents are"),
         ("the diamond is there", "is no claim"),

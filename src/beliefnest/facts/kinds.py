@@ -1,6 +1,6 @@
 """Facts: how something is. A container's items, an agent's place, a block's state, a sign's text.
 
-The one language of goals, expectations, `share`, evidence and answers; docs/facts.md describes it
+The one language of goals, expectations, `share`, evidence and claims; docs/facts.md describes it
 for users. Each kind of fact is a class that reads, writes, judges and words itself, and says what
 it takes to bring it about. To add a kind, add its keys to `FactEntry`, and its class to `KINDS`.
 """
@@ -11,11 +11,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, dataclass
 from functools import cache
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import msgspec
 
-from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import InputError
 from beliefnest.facts.effort import FAR, PER_BLOCK, to_agent, to_block, to_container
 from beliefnest.facts.states import Facts, Look, PlanFacts, StateFacts
@@ -29,6 +28,9 @@ from beliefnest.world.signs import sign_words
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import EYE_HEIGHT, Items, Point, Position, block_at
 from beliefnest.world.words import items_words, point_text, point_words
+
+if TYPE_CHECKING:
+    from beliefnest.belief.grounds import PerceivedEvent
 
 WITHIN = 1.0
 """Distance in blocks within which an agent counts as being at a place, if no other is given."""
@@ -175,7 +177,7 @@ class Fact(ABC):
         return 1.0
 
     @abstractmethod
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         """Return the agents that brought the fact about.
 
         Args:
@@ -323,7 +325,7 @@ class ItemsIn(_Items):
             for item, count in self.wanted
         )
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         if not self.wanted:
             takings = _acts_at(self.owner, events, EventKind.GET_ITEM_FROM_CHEST)
             return {each.actor for each in takings}
@@ -373,7 +375,7 @@ class Lacks(Fact):
     def effort(self, facts: PlanFacts) -> float:
         return float(max(1, facts.items_in(self.place).get(self.item, 0)))
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         takings = _acts_at(self.place, events, EventKind.GET_ITEM_FROM_CHEST)
         return {each.actor for each in takings if self.item in each.detail["items"]}
 
@@ -452,7 +454,7 @@ class AgentAt(Fact):
         far = FAR if feet is None or place is None else math.dist(feet, middle_of(place))
         return 1.0 + far * PER_BLOCK
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         return {self.agent}
 
     def pursuit(self, agent: str, mine: Items) -> Pursuit:
@@ -487,7 +489,7 @@ class LeversHeld(Fact):
         off = [_is_off(facts, site) + self._far(facts, site) * PER_BLOCK for site in sites]
         return 1.0 + min(off, default=2 * FAR * PER_BLOCK)
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         return set(self.agents)
 
     def pursuit(self, agent: str, mine: Items) -> Pursuit:
@@ -549,7 +551,7 @@ class ItemsWith(_Items):
             return float(sum(self.known(facts).values()))
         return sum(to_agent(facts, self.owner, item) for item in self.items)
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         return {self.owner}
 
     def pursuit(self, agent: str, mine: Items) -> Pursuit:
@@ -585,7 +587,7 @@ class _BlockFact(Fact):
     def effort(self, facts: PlanFacts) -> float:
         return to_block(facts, self.blocks[0], self.wanted(facts))
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         here = _acts_at(self.blocks[0], events)
         changed = [each.actor for each in here if each.kind not in AT_CONTAINERS]
         return set(changed[-1:])
@@ -720,7 +722,7 @@ class SignSays(Fact):
         words = "unknown" if there is None else sign_words(there) or "nothing"
         return f"sign {point_words(self.place)}", words
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         writings = _acts_at(self.place, events, EventKind.BLOCK_UPDATE)
         return {each.actor for each in writings if each.detail.get("text") == self.text}
 
@@ -758,7 +760,7 @@ class Heard(Fact):
     def found(self, facts: StateFacts, named: Named) -> tuple[str, str]:
         return f"{self.text!r}", "heard" if facts.has_heard(self.text) else "not heard"
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         said = (each for each in events if each.kind is EventKind.CHAT)
         return {each.actor for each in said if self.text in each.detail["text"]}
 
@@ -826,7 +828,7 @@ class StatedFact:
         """Return True if the fact holds there."""
         return self.fact.holds(look(self.path))
 
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+    def bringers(self, events: Iterable["PerceivedEvent"]) -> set[str | None]:
         """Return the agents that brought the condition about: by holding, having or doing."""
         return {self.path[0]} if self.path else self.fact.bringers(events)
 
@@ -848,8 +850,8 @@ def agrees(there: str, wanted: str) -> bool:
 
 
 def _acts_at(
-    place: Position, events: Iterable[PerceivedEvent], kind: EventKind | None = None
-) -> list[PerceivedEvent]:
+    place: Position, events: Iterable["PerceivedEvent"], kind: EventKind | None = None
+) -> list["PerceivedEvent"]:
     here = [each for each in events if each.detail.get("position") == place]
     return [each for each in here if kind in (None, each.kind)]
 

@@ -1,6 +1,6 @@
 """Reading of facts: their entries, checked against the world that they are about."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -8,6 +8,7 @@ import msgspec
 
 from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
 from beliefnest.facts.kinds import KINDS, Fact, FactEntry, StatedFact
+from beliefnest.world.claims import Claim
 from beliefnest.world.forms import notes, scene_kinds
 from beliefnest.world.paths import BeliefPath, parse_path
 from beliefnest.world.registry import Registry
@@ -19,6 +20,9 @@ _SCENE_KINDS, _NOTES = scene_kinds(FactEntry), notes(FactEntry)
 
 FORMER = {"believed": "path", "position": "at", "place": "at"}
 """Names of keys in earlier versions, or elsewhere in files, and what they are in facts."""
+
+ClaimLike = Claim | Mapping[str, Any]
+"""Claim, or the fact that is claimed, as a mapping."""
 
 Where = tuple[str | int, ...]
 """Keys and list indices from the top of a document to an entry or a value of it."""
@@ -122,6 +126,29 @@ def edits_of(entries: Iterable[FactEntry]) -> dict[str, dict[Any, Any]]:
         argument, key, value = fact.edit
         edits.setdefault(argument, {})[key] = value
     return edits
+
+
+def claimed(entry: FactEntry) -> Sequence[Claim]:
+    """Return the claims that state a fact.
+
+    Raises:
+        InputError: The entry is no fact, or it cannot be claimed.
+    """
+    fact = fact_in(entry)
+    if not fact.claims or entry.path != "/":
+        raise InputError(
+            f"'{fact}' cannot be claimed; claim items or `lacks` of a container, or where an "
+            "agent is, or the state of a block, and no belief"
+        )
+    return fact.claims
+
+
+def as_claims(claims: Iterable[ClaimLike]) -> Iterable[Claim]:
+    """Return claims, some of which may be given as facts; raises as `claimed` does."""
+    if isinstance(claims, str) or not isinstance(claims, Iterable):
+        return claims  # The caller refuses it.
+    stated = (claimed(plain_entry(e)) if isinstance(e, Mapping) else (e,) for e in claims)
+    return [claim for each in stated for claim in each]
 
 
 def plain_entry(entry: object) -> FactEntry:

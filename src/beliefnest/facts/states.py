@@ -1,12 +1,14 @@
 """States as facts read them: real, believed or imagined."""
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from beliefnest.belief.grounds import AgentBelief, ContainerBelief
-from beliefnest.belief.view import State
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Items, Point, Position
+
+if TYPE_CHECKING:
+    from beliefnest.belief.grounds import AgentBelief, ContainerBelief
+    from beliefnest.belief.view import State
 
 
 class Facts(Protocol):
@@ -55,10 +57,10 @@ Look = Callable[[BeliefPath], Facts]
 
 class _View(Protocol):
     @property
-    def containers(self) -> Mapping[Position, ContainerBelief]: ...
+    def containers(self) -> Mapping[Position, "ContainerBelief"]: ...
 
     @property
-    def agents(self) -> Mapping[str, AgentBelief]: ...
+    def agents(self) -> Mapping[str, "AgentBelief"]: ...
 
     @property
     def signs(self) -> Mapping[Position, str]: ...
@@ -104,7 +106,7 @@ class StateFacts(ViewFacts):
         state: The state.
     """
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: "State") -> None:
         super().__init__(state)
         self._blocks, self._state = state.blocks, state
 
@@ -126,6 +128,6 @@ class StateFacts(ViewFacts):
         ]
 
 
-def looking_at(states: Mapping[BeliefPath, State]) -> Look:
+def looking_at(states: Mapping[BeliefPath, "State"]) -> Look:
     """Return a function that looks up facts in states by path."""
     return lambda path: StateFacts(states[path])

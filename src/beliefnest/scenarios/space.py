@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
-from beliefnest.facts.reading import fact_in
+from beliefnest.facts.reading import claimed
 from beliefnest.scenarios.checks import check_inside, check_items
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
@@ -101,18 +101,12 @@ def build_sign_claims(
     """Return the claims of signs by position, as plain data."""
     claims_by_place: dict[Position, PlainClaims] = {}
     for number, entry in enumerate(file.signs):
-        for index, claimed in enumerate(entry.claims):
+        for index, fact in enumerate(entry.claims):
             path = ("signs", number, "claims", index)
             with document.naming(path):
-                claims = fact_in(claimed).claims
+                claims = claimed(fact)
                 for claim in claims:
                     claim.check(box, file.agents)
-            if not claims or claimed.path != "/":
-                raise document.fault(
-                    path,
-                    "cannot be claimed; claim items or `lacks` of a container, or where an "
-                    "agent is, or the state of a block, and no belief",
-                )
             if entry.at not in texts:
                 raise document.fault(path, "is for signs with a text; add `text`")
             plain = (claim.plain() for claim in claims)

@@ -12,7 +12,8 @@ from copy import copy
 from typing import Any
 
 from beliefnest.errors import InputError, WorldError
-from beliefnest.world.claims import Claim, claims_from_plain, with_claims
+from beliefnest.facts.reading import ClaimLike, as_claims
+from beliefnest.world.claims import claims_from_plain, with_claims
 from beliefnest.world.doors import used_door
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame, Snapshot
@@ -76,7 +77,7 @@ class ScriptedWorld(PoweredState):
         equipment: Mapping[str, Mapping[str, str]] | None = None,
         tick: int = 0,
         signs: Mapping[Position, str] | None = None,
-        sign_claims: Mapping[Position, Iterable[Claim]] | None = None,
+        sign_claims: Mapping[Position, Iterable[ClaimLike]] | None = None,
         fills: Iterable[tuple[str, Position, Position]] = (),
     ) -> None:
         super().__init__(box)
@@ -297,7 +298,7 @@ class ScriptedWorld(PoweredState):
             pending.events.append(Event(EventKind.PLACE_BLOCK, name, detail))
 
     def write_sign(
-        self, name: str, position: Position, text: str, claims: Iterable[Claim] = ()
+        self, name: str, position: Position, text: str, claims: Iterable[ClaimLike] = ()
     ) -> None:
         """Let an agent replace the text on a sign; every agent that sees the sign sees the text.
 
@@ -339,11 +340,11 @@ class ScriptedWorld(PoweredState):
             place = self._container(position)
             pending.events.append(Event(EventKind.OPEN_CONTAINER, name, {"position": place}))
 
-    def say(self, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
+    def say(self, name: str, text: str, claims: Iterable[ClaimLike] = ()) -> None:
         """Let an agent speak aloud; `claims` are the structured statements of the text."""
         self._utter(EventKind.CHAT, name, text, claims)
 
-    def whisper(self, name: str, other: str, text: str, claims: Iterable[Claim] = ()) -> None:
+    def whisper(self, name: str, other: str, text: str, claims: Iterable[ClaimLike] = ()) -> None:
         """Let an agent speak to one other agent, unnoticed by all others. Claims as in `say`."""
         with self._act() as pending:
             if name == other:
@@ -417,17 +418,18 @@ class ScriptedWorld(PoweredState):
             pending.containers.add(place)
             pending.events.append(Event(kind, name, {"position": place, "items": moved}))
 
-    def _utter(self, kind: EventKind, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
+    def _utter(
+        self, kind: EventKind, name: str, text: str, claims: Iterable[ClaimLike] = ()
+    ) -> None:
         with self._act() as pending:
             self._agent(name)
             detail = self._claiming({"text": checked_utterance(text)}, claims)
             pending.events.append(Event(kind, name, detail))
 
-    def _claiming(self, detail: dict[str, Any], claims: Iterable[Claim]) -> dict[str, Any]:
+    def _claiming(self, detail: dict[str, Any], claims: Iterable[ClaimLike]) -> dict[str, Any]:
         """Return an utterance's detail with its claims; WorldError if they do not fit."""
         try:
-            agents = self._facts.agents
-            return with_claims(detail, claims, self._box, agents)
+            return with_claims(detail, as_claims(claims), self._box, self._facts.agents)
         except InputError as fault:
             raise WorldError(str(fault)) from None
 
