@@ -132,8 +132,8 @@ def run_cells(
             )
             if result.unavailable:
                 raise UnavailableModelError(
-                    f"{result.unavailable}; {counted(progress.left, 'cell')} left to play: run the "
-                    "same study again after that"
+                    f"{result.unavailable}; {counted(progress.left, 'cell')} left to play: run it "
+                    "again after that"
                 )
             has_result = result.content["error"] is None
             progress = progressed(progress.done + has_result, progress.failed + (not has_result))
