@@ -143,10 +143,14 @@ def claimed(entry: FactEntry) -> Sequence[Claim]:
     return fact.claims
 
 
-def as_claims(claims: Iterable[ClaimLike]) -> Iterable[Claim]:
-    """Return claims, some of which may be given as facts; raises as `claimed` does."""
-    if isinstance(claims, str) or not isinstance(claims, Iterable):
-        return claims  # The caller refuses it.
+def as_claims(claims: object) -> Any:
+    """Return a list with claims in place of facts; other values stay, for their reader to refuse.
+
+    Raises:
+        InputError: A mapping is no fact, or its fact cannot be claimed.
+    """
+    if not isinstance(claims, list | tuple):
+        return claims
     stated = (claimed(plain_entry(e)) if isinstance(e, Mapping) else (e,) for e in claims)
     return [claim for each in stated for claim in each]
 
