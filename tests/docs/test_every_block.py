@@ -65,6 +65,7 @@ RUN_BY = {
     ("supplement.md", "python"): "docs/test_supplement_page.py",
     ("teaming.md", "python"): "docs/test_teaming_page.py",
     ("timelines.md", "python"): "docs/test_nest_pages.py",
+    ("train.md", "python"): "examples/test_train_an_agent.py",
     ("tutorial.md", "python"): "docs/test_tutorial.py",
     ("visiting.md", "python"): "visits/test_layout.py",
 }
