@@ -15,7 +15,7 @@ import numpy.typing as npt
 from beliefnest.errors import InputError
 from beliefnest.facts.reading import edits_of, plain_entry
 from beliefnest.world.array_types import Floats
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items, Point, Position
 
@@ -302,7 +302,7 @@ def _read_alternative(name: object, edits: object) -> Alternative:
     containers = {}
     for place, items in dict(edits.get("containers", {})).items():
         at = _position(name, place)
-        if at in blocks and not registry.is_container(blocks[at].split("[")[0]):
+        if at in blocks and not registry.is_container(block_name(blocks[at])):
             raise InputError(
                 f"alternative {quoted(name)} puts items into {quoted(blocks[at])} at {at}, which "
                 "is no container; change its block or its contents"

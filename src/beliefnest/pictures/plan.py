@@ -18,7 +18,7 @@ from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mar
 from beliefnest.pictures.relief import UNKNOWN, Relief, standing_columns
 from beliefnest.pictures.room import Room
 from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, Scene, Store
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.signs import is_sign
 
 LEAST_HEAT = 0.005
@@ -583,7 +583,7 @@ def _ground_colour(cell: PlanColumn) -> str:
 @cache
 def _standing(text: str) -> tuple[tuple[float, float, float, float], ...]:
     """Return the boxes of a block in its column: left, top, right, bottom, from 0 to 1."""
-    name = text.partition("[")[0]
+    name = block_name(text)
     if name in {"air", "cave_air", "void_air"}:
         return ()
     if any(kind in name for kind in (*DEVICES, *_STORES)):
@@ -596,7 +596,7 @@ def _standing(text: str) -> tuple[tuple[float, float, float, float], ...]:
 
 @cache
 def _colour(text: str, default: str) -> str:
-    name = text.partition("[")[0]
+    name = block_name(text)
     for dyed in _DYED:
         if name.removesuffix(dyed) in _DYES:
             return _DYES[name.removesuffix(dyed)]

@@ -14,7 +14,7 @@ from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
 from beliefnest.pictures.relief import Relief, ReliefWindow, is_wide, read_relief
 from beliefnest.world.paths import path_text
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.signs import sign_words
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Items, Point, Position
@@ -436,7 +436,7 @@ def read_stores(
         stores.append(
             Store(
                 position=place,
-                name=None if text is None else text.partition("[")[0],
+                name=None if text is None else block_name(text),
                 label=on_one_line(labels.get(place, f"({', '.join(map(str, place))})")),
                 items=content.items,
                 complete=content.complete,

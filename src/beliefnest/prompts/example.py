@@ -14,7 +14,7 @@ from beliefnest.prompts.observations import Found, Happened, Outset, Read, Sight
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
@@ -60,11 +60,7 @@ class ExampleBlocks:
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Return the known blocks with one of the names, in order of position."""
-        return {
-            at: block
-            for at, block in sorted(self.known.items())
-            if block.partition("[")[0] in names
-        }
+        return {at: block for at, block in sorted(self.known.items()) if block_name(block) in names}
 
     @property
     def grid(self) -> BlockGrid:

@@ -15,7 +15,7 @@ import msgspec
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Event, Point, Position, Sign, block_at
 
@@ -275,12 +275,10 @@ def _stated(text: str) -> str:
     except BeliefNestError as fault:
         raise type(fault)(f"a claim about a block: {fault}") from None
     # Keep only the properties that the text names, in sorted order; a claim is silent on others.
-    name, _, inner = text.strip().partition("[")
-    stated = sorted(part.partition("=")[0].strip() for part in inner.rstrip("]").split(",") if part)
-    properties = registry.properties(state)
-    written = ",".join(f"{key}={properties[key]}" for key in stated)
-    bare = name.removeprefix("minecraft:")
-    return f"{bare}[{written}]" if written else bare
+    _, stated = parse_state(text)
+    written = ",".join(f"{key}={value}" for key, value in sorted(stated.items()))
+    name = registry.name(state)
+    return f"{name}[{written}]" if written else name
 
 
 def _block_position(place: object) -> Position:
