@@ -5,7 +5,7 @@ Run it with `python examples/train_an_agent.py lost-diamond` or `... joint-lift`
 instances that nobody has learned from, and writes a figure. It takes about a quarter of an hour.
 """
 
-import sys
+import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -109,4 +109,6 @@ def main(name: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    parser = argparse.ArgumentParser(description="Compare learners with other policies in a task.")
+    parser.add_argument("task", choices=GAMES)
+    main(parser.parse_args().task)
