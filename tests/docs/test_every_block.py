@@ -33,6 +33,7 @@ COMMAND = typer.main.get_command(app)
 RUN_BY = {
     ("README.md", "python"): "docs/test_docs.py",
     ("README.md", "bibtex"): "packaging/test_citation.py",
+    ("benchmark.md", "python"): "docs/test_benchmark_page.py",
     ("claims.md", "python"): "docs/test_claims_page.py",
     ("coming-from-mineflayer.md", "python"): "docs/test_nest_pages.py",
     ("episodes.md", "python"): "docs/test_episodes_page.py",

@@ -102,7 +102,7 @@ def _shortcuts(report: Mapping[str, Any]) -> Table:
     table = result_table("shortcut", "items", "answered", "accuracy", "95 %", "chance", "at chance")
     for row in report["shortcuts"]:
         table.add_row(
-            row["shortcut"].replace("_", " "),
+            row["shortcut"],
             str(row["items"]),
             str(row["answered"]),
             f"{row['accuracy']:.0%}",

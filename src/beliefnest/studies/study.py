@@ -31,10 +31,11 @@ from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies
 from beliefnest.studies.file import read_design
 from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.items.item_set import ItemSet
-from beliefnest.studies.items.making import made_items, with_balanced_items
+from beliefnest.studies.items.making import MadeItems, made_items, with_balanced_items
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
 from beliefnest.studies.kinds import EPISODE_KIND, SCENARIO_KIND
 from beliefnest.studies.list_balance import with_balanced_lists
+from beliefnest.studies.participants.items import item_name
 from beliefnest.studies.participants.playing import OnItem, refuse_claims
 from beliefnest.studies.participants.running import (
     Page,
@@ -209,6 +210,7 @@ class Study:
         self._kind = SCENARIO_KIND if isinstance(design, Design) else EPISODE_KIND
         self._documents: dict[str, Document] = {name: read_document(name) for name in scenarios}
         self._plan: Plan[Cell] | Plan[EpisodeCell] | None = None
+        self._made: MadeItems = {}
 
     @property
     def design(self) -> Design | EpisodeDesign:
@@ -245,7 +247,8 @@ class Study:
         if design.design == "latin-square":
             plan = with_balanced_lists(plan)
         if design.balance:
-            plan = with_balanced_items(plan, self._documents, design.balance, design.seed)
+            self._made = made_items(plan.cells, self._documents)
+            plan = with_balanced_items(plan, self._made, design.balance, design.seed)
         return _told_apart(plan, self._kind.table)
 
     @contextmanager
@@ -444,7 +447,9 @@ class Study:
             raise InputError(f"held_out is {quoted(held_out)}; give a share of at least 0, below 1")
         design, cells = self._scenarios()
         refuse_claims(design.setting)
-        made = list(made_items(cells, self._documents, on_item or _say_nothing_of_items))
+        played = self._made or made_items(cells, self._documents, on_item)
+        names = dict.fromkeys(map(item_name, cells))
+        made = [each for name in names for each in played.get(name, ())]
         return ItemSet(
             name=name,
             items=tuple(each for each in made if isinstance(each, ItemRecord)),

@@ -14,7 +14,7 @@ from beliefnest.studies.allocation import DESIGNS, Allocation
 from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
 from beliefnest.studies.design import Constraint, Design
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies, listed, seeds_of
-from beliefnest.studies.items.report import FIXED_SOLVERS
+from beliefnest.studies.items.report import FIXED_SOLVERS, LEARNED
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import nearest_or_all
 
@@ -96,6 +96,12 @@ def design_of(
 def _shortcuts(keys: StudyKeys) -> tuple[str, ...]:
     names = several("balance", keys.balance)
     for number, name in enumerate(names):
+        if name in LEARNED:
+            why = (
+                f"{name} learns from the items themselves, so that no choice of items balances it; "
+                f"give some of {', '.join(FIXED_SOLVERS)}"
+            )
+            raise StudyKeyError(("balance", number), why)
         if name not in FIXED_SOLVERS:
             why = f"there is no shortcut {quoted(name)}{nearest_or_all(name, list(FIXED_SOLVERS))}"
             raise StudyKeyError(("balance", number), why)

@@ -315,3 +315,8 @@ def test_unknown_shortcuts_are_refused(folder):
         ScenarioError, match=r"wrong.yaml:3: balance.*'realty'.*did you mean 'reality'"
     ):
         bn.Study.load(folder / "wrong.yaml")
+
+
+def test_shortcuts_that_learn_cannot_be_balanced(folder):
+    with pytest.raises(InputError, match="words learns from the items themselves"):
+        bn.Study([str(folder / "boxes.yaml")], balance=["words"])

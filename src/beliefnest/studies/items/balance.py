@@ -13,6 +13,11 @@ from beliefnest.studies.items.report import FIXED_SOLVERS, OF_BELIEFS
 from beliefnest.world.words import listed
 
 _EXACT = 1e-6
+_GAP = 0.05
+"""Share by which the chosen part may be smaller than the largest: to prove that none is larger can
+take for ever."""
+_MOST_NODES = 2000
+"""Greatest number of branches that are searched for a part, whatever time that takes."""
 _Excess = tuple[float, ...]
 """Number of right answers above what guesses have, for each shortcut and order."""
 
@@ -20,7 +25,7 @@ _Excess = tuple[float, ...]
 def balanced_names(
     made: Mapping[str, Sequence[ItemRecord]], names: Sequence[str], seed: int
 ) -> frozenset[str]:
-    """Return the names of most scenes on which shortcuts are right as often as guesses.
+    """Return the names of nearly the most scenes on which shortcuts are right as often as guesses.
 
     Each shortcut is balanced within each order.
 
@@ -30,7 +35,7 @@ def balanced_names(
         seed: Seed of the choice among equal scenes.
 
     Raises:
-        InputError: There are no such scenes; the message has the numbers.
+        InputError: No such scenes were found; the message has the numbers.
         MissingExtraError: SciPy is not installed.
     """
     orders = sorted({each.order for items in made.values() for each in items})
@@ -40,7 +45,7 @@ def balanced_names(
         scenes[tuple(_excess(items, *dimension) for dimension in dimensions)].append(scene)
     kinds = sorted(scenes)
     counts = _largest(kinds, [len(scenes[kind]) for kind in kinds])
-    if not counts.any():
+    if counts is None or not counts.any():
         raise InputError(_impossible(made, dimensions))
     chosen: set[str] = set()
     for kind, count in zip(kinds, counts, strict=True):
@@ -68,7 +73,7 @@ def _answers(
 
 
 def _largest(kinds: Sequence[_Excess], counts: Sequence[int]) -> Any:
-    """Return how many scenes of each kind to take, so that all excesses add up to 0."""
+    """Return how many scenes of each kind to take, so that excesses add up to 0; None: unknown."""
     try:
         from scipy.optimize import Bounds, LinearConstraint, milp
     except ImportError:
@@ -78,8 +83,9 @@ def _largest(kinds: Sequence[_Excess], counts: Sequence[int]) -> Any:
         integrality=np.ones(len(kinds)),
         bounds=Bounds(0, counts),
         constraints=LinearConstraint(np.array(kinds).T, -_EXACT, _EXACT),
+        options={"mip_rel_gap": _GAP, "node_limit": _MOST_NODES},
     )
-    return np.rint(solution.x).astype(int)
+    return None if solution.x is None else np.rint(solution.x).astype(int)
 
 
 def _impossible(

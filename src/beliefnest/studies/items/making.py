@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,11 +25,14 @@ from beliefnest.studies.participants.playing import STORY, OnItem, played_items
 from beliefnest.world.paths import parse_path
 from beliefnest.world.words import listed, titled
 
+MadeItems = Mapping[str, Sequence[ItemRecord | DroppedQuestion]]
+"""Questions of a study by the name of their scene (`item_name`), in the order of the study."""
+
 
 def made_items(
-    cells: Sequence[Cell], documents: Mapping[str, Document], on_item: OnItem
-) -> Iterator[ItemRecord | DroppedQuestion]:
-    """Play scripts in the scripted world, and yield each of their questions.
+    cells: Sequence[Cell], documents: Mapping[str, Document], on_item: OnItem | None = None
+) -> MadeItems:
+    """Play scripts in the scripted world, and return their questions.
 
     Args:
         cells: Cells of the study's plan.
@@ -40,33 +43,30 @@ def made_items(
         ScenarioError: No probe asks a question.
         BeliefNestError: A script failed; the message names the cell.
     """
-    for item, nest, _ in played_items(items_of(cells, documents), on_item, "scripted"):
-        for question in item.questions:
-            yield _made(nest, item, question)
+    items = items_of(cells, documents)
+    played = played_items(items, on_item or (lambda what, done, total: None), "scripted")
+    return {
+        item.name: [_made(nest, item, each) for each in item.questions] for item, nest, _ in played
+    }
 
 
 def with_balanced_items(
-    plan: Plan[Cell], documents: Mapping[str, Document], shortcuts: Sequence[str], seed: int
+    plan: Plan[Cell], made: MadeItems, shortcuts: Sequence[str], seed: int
 ) -> Plan[Cell]:
     """Return the part of a plan on whose scenes shortcuts are right as often as guesses.
 
     Raises:
         StudyKeyError: There is no such part.
-        BeliefNestError: As `made_items`.
     """
-    made: dict[str, list[ItemRecord]] = {}
-    for item, nest, _ in played_items(items_of(plan.cells, documents), _say_nothing, "scripted"):
-        results = (_made(nest, item, each) for each in item.questions)
-        made[item.name] = [each for each in results if isinstance(each, ItemRecord)]
+    asked = {
+        name: [each for each in questions if isinstance(each, ItemRecord)]
+        for name, questions in made.items()
+    }
     try:
-        names = balanced_names(made, shortcuts, seed)
+        names = balanced_names(asked, shortcuts, seed)
     except InputError as error:
         raise StudyKeyError("balance", str(error)) from None
     return replace(plan, cells=tuple(each for each in plan.cells if item_name(each) in names))
-
-
-def _say_nothing(what: str, done: int, total: int) -> None:
-    """Ignore progress."""
 
 
 def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | DroppedQuestion:

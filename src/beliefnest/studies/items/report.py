@@ -38,6 +38,9 @@ FIXED_SOLVERS: Mapping[str, Solver] = {
 }
 """Shortcuts that learn nothing, by name."""
 
+LEARNED = ("majority", "words")
+"""Shortcuts that learn from the other items of a set, so that no choice of items balances them."""
+
 OF_BELIEFS = ("reality", "lower_order")
 """Shortcuts that answer questions about beliefs only: reality answers those of order 0 rightly."""
 
@@ -108,10 +111,10 @@ def shortcut_rows(items: Sequence[ItemRecord]) -> Iterator[dict[str, Any]]:
         chance lies within the interval.
     """
     folds = _folds(items)
+    learned = {"majority": _majority, "words": _naive_bayes}
     solvers = {
         **FIXED_SOLVERS,
-        "majority": _learned(items, folds, _majority),
-        "words": _learned(items, folds, _naive_bayes),
+        **{name: _learned(items, folds, learned[name]) for name in LEARNED},
     }
     for name, solve in solvers.items():
         own = [each for each in items if each.chain or name not in OF_BELIEFS]

@@ -1,0 +1,31 @@
+"""The page days/benchmark.md: from its files to a set that is made again."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from beliefnest.cli.app import run_command_line
+
+PAGE = (Path(__file__).parents[2] / "docs" / "days" / "benchmark.md").read_text(encoding="utf-8")
+SCENARIO, STUDY = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+(CODE,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.mark.extra("scipy")
+def test_the_page_leads_to_a_released_set(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("walks-out.yaml").write_text(SCENARIO, encoding="utf-8")
+    Path("study.yaml").write_text(STUDY, encoding="utf-8")
+    commands = re.findall(r"^\$ beliefnest (.*)$", PAGE, re.MULTILINE)
+    assert len(commands) == 3
+    for command in commands:
+        assert run_command_line(shlex.split(command)) == 0
+    printed = capsys.readouterr().out
+    assert "made again with the same bytes" in printed
+    assert "NO" not in printed.split()
+    exec(compile(CODE, "benchmark.md", "exec"), {"__name__": "example"})
+    assert " thinks that the " in capsys.readouterr().out
