@@ -90,16 +90,16 @@ class KnownWorld {
     const { low, high } = this.box
     const reach = (axis, coordinate) => [Math.max(low[axis], Math.floor(coordinate - maxDistance)), Math.min(high[axis], Math.ceil(coordinate + maxDistance))]
     const [[x0, x1], [y0, y1], [z0, z1]] = [reach(0, point.x), reach(1, point.y), reach(2, point.z)]
-    const found = []
+    const places = []
     for (let x = x0; x <= x1; x++) {
       for (let y = y0; y <= y1; y++) {
         for (let z = z0; z <= z1; z++) {
           const block = this.blockIn(x, y, z)
-          if (block !== null && matches(block) && block.position.distanceTo(point) <= maxDistance) found.push(block.position.clone())
+          if (block !== null && matches(block) && block.position.distanceTo(point) <= maxDistance) places.push(block.position.clone())
         }
       }
     }
-    return found.sort((a, b) => a.distanceTo(point) - b.distanceTo(point)).slice(0, count)
+    return places.sort((a, b) => a.distanceTo(point) - b.distanceTo(point)).slice(0, count)
   }
 }
 

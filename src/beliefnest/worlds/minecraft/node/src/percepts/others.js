@@ -68,17 +68,17 @@ class Others {
    * @returns {[string, object][]} events for the program
    */
   see (name, pose) {
-    const known = this.byName.get(name)
+    const entityBefore = this.byName.get(name)
     if (pose === null) {
       this.byName.delete(name)
-      return known === undefined ? [] : [['entityGone', gone(known)]]
+      return entityBefore === undefined ? [] : [['entityGone', gone(entityBefore)]]
     }
-    const entity = known ?? this.agent(name)
+    const entity = entityBefore ?? this.agent(name)
     this.byName.set(name, entity)
     entity.position.update(new Vec3(...pose.position))
     entity.equipment = SLOTS.map(slot => this.stack(pose.equipment[slot], 1))
     Object.assign(entity, { yaw: pose.yaw, pitch: pose.pitch, onGround: pose.on_ground, heldItem: entity.equipment[0] })
-    return [[known === undefined ? 'entitySpawn' : 'entityMoved', entity]]
+    return [[entityBefore === undefined ? 'entitySpawn' : 'entityMoved', entity]]
   }
 
   /**
@@ -86,16 +86,16 @@ class Others {
    * @returns {[string, object][]} events for the program
    */
   find (number, item) {
-    const known = this.items.get(number)
+    const entityBefore = this.items.get(number)
     if (item === null) {
       this.items.delete(number)
-      return known === undefined ? [] : [['entityGone', gone(known)]]
+      return entityBefore === undefined ? [] : [['entityGone', gone(entityBefore)]]
     }
-    const entity = known ?? this.dropped(number)
+    const entity = entityBefore ?? this.dropped(number)
     this.items.set(number, entity)
     entity.position.update(new Vec3(...item.position))
     entity.stack = this.stack(item.name, item.count)
-    return known === undefined ? [['entitySpawn', entity], ['itemDrop', entity]] : [['entityMoved', entity]]
+    return entityBefore === undefined ? [['entitySpawn', entity], ['itemDrop', entity]] : [['entityMoved', entity]]
   }
 
   agent (username) {

@@ -107,27 +107,27 @@ class View {
     // Keep the backlog until the program has a listener.
     const listens = ANNOUNCED.some(event => this.emitter.listenerCount(event) > 0)
     const before = listens ? this.backlog.splice(0) : []
-    const told = [...before, ...(changes === null ? [] : this.learn(changes))]
-    for (const [event, ...values] of told) this.emitter.emit(event, ...values)
+    const events = [...before, ...(changes === null ? [] : this.learn(changes))]
+    for (const [event, ...values] of events) this.emitter.emit(event, ...values)
     this.collected = []
     for (const resolve of this.waiting.splice(0)) resolve()
   }
 
   /** Apply changes. Return the events that announce them, each a name with values. @returns {Array[]} */
   learn ({ blocks = [], signs = null, agents = {}, items = {}, announced = [] }) {
-    const told = []
+    const events = []
     if (signs !== null) this.known.readSigns(signs)
     for (const [x, y, z, state] of blocks) {
       const { before, after } = this.known.learn(x, y, z, state)
       this.walker.learn(before, after)
-      told.push(['blockUpdate', before, after], [`blockUpdate:(${x}, ${y}, ${z})`, before, after])
+      events.push(['blockUpdate', before, after], [`blockUpdate:(${x}, ${y}, ${z})`, before, after])
     }
-    for (const [name, pose] of Object.entries(agents)) told.push(...this.others.see(name, pose))
+    for (const [name, pose] of Object.entries(agents)) events.push(...this.others.see(name, pose))
     const taken = this.collected.map(({ name, number }) => [this.others.entityOf(name), this.others.items.get(number)])
-    for (const [number, item] of Object.entries(items)) told.push(...this.others.find(Number(number), item))
+    for (const [number, item] of Object.entries(items)) events.push(...this.others.find(Number(number), item))
     // Only if the agent sees the collector and has seen the item lie there.
-    told.push(...taken.filter(pair => pair.every(Boolean)).map(pair => ['playerCollect', ...pair]))
-    return [...told, ...announced]
+    events.push(...taken.filter(pair => pair.every(Boolean)).map(pair => ['playerCollect', ...pair]))
+    return [...events, ...announced]
   }
 
   /** Release the bot and return it. @returns {object} */
@@ -170,14 +170,14 @@ function looking (view, known) {
 
 /** Return the methods that act on others, translated to the game's entity ids. */
 function touching (body, others) {
-  const told = name => (entity, ...rest) => body[name](others.realOf(entity), ...rest)
-  const opened = name => (target, ...rest) => body[name](target.stateId === undefined ? others.realOf(target) : target, ...rest)
+  const acting = name => (entity, ...rest) => body[name](others.realOf(entity), ...rest)
+  const opening = name => (target, ...rest) => body[name](target.stateId === undefined ? others.realOf(target) : target, ...rest)
   return {
-    activateEntity: told('activateEntity'),
-    useOn: told('useOn'),
-    attack: told('attack'),
-    openContainer: opened('openContainer'),
-    openChest: opened('openChest')
+    activateEntity: acting('activateEntity'),
+    useOn: acting('useOn'),
+    attack: acting('attack'),
+    openContainer: opening('openContainer'),
+    openChest: opening('openChest')
   }
 }
 
