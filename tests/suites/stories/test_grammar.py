@@ -103,6 +103,8 @@ def test_blank_lines_count_and_are_left_out():
         ("Where is the pear really?", (), "pear", False),
         ("Where was the pear at the beginning?", (), "pear", True),
         ("Where will Ann look for the pear?", ("Ann",), "pear", False),
+        ("Where would Ann search for the pear?", ("Ann",), "pear", False),
+        ("Where does Ann expect to find the pear?", ("Ann",), "pear", False),
         ("Where does Ann really think the pear is?", ("Ann",), "pear", False),
         ("Where does Ann think that Bob searches for the pear?", ("Ann", "Bob"), "pear", False),
         ("Where does Ann think Bob thinks the red pear is?", ("Ann", "Bob"), "red pear", False),

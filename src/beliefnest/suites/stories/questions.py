@@ -41,6 +41,7 @@ class Question:
 _AGENT = r"[A-Za-z0-9_]{1,16}"
 _THING = r"(?:the )?(?P<thing>[A-Za-z0-9][\w' -]*?)"
 _THINK = r"(?:really )?(?:thinks?|believes?)(?: that)?"
+_WILL = "(?:will|would|does)"
 _CHAIN = rf"(?P<chain>{_AGENT} {_THINK}(?: {_AGENT} {_THINK})*)"
 _DOOR = r"the door of (?:the )?(?P<door>[A-Za-z0-9][\w' -]*?)"
 _SIGN = r"the sign of (?:the )?(?P<sign>[A-Za-z0-9][\w' -]*?)"
@@ -48,10 +49,10 @@ _BEGINNING = re.compile(rf"Where was {_THING} (?:at|in) the beginning")
 _FORMS = (
     re.compile(rf"Where is {_THING}(?: really| now)?"),
     _BEGINNING,
-    re.compile(rf"Where will (?P<who>{_AGENT}) (?:look|search) for {_THING}"),
+    re.compile(rf"Where {_WILL} (?P<who>{_AGENT}) (?:look for|search for|expect to find) {_THING}"),
     re.compile(
         rf"Where does {_CHAIN} (?:{_THING} (?:really )?is|(?P<who>{_AGENT}) "
-        rf"(?:searches|looks|will search|will look) for {_THING.replace('thing', 'sought')})"
+        rf"(?:searches|looks|{_WILL} search|{_WILL} look) for {_THING.replace('thing', 'sought')})"
     ),
     re.compile(rf"Is {_DOOR} (?:really )?open"),
     re.compile(rf"Does {_CHAIN} {_DOOR} is open"),
