@@ -34,5 +34,8 @@ def test_every_shortcut_is_at_chance_on_the_whole_set() -> None:
     assert len(made.items) >= 1000
     assert made.dropped == ()
     check_items(made.items, families=7)
-    away = [row for row in shortcut_rows(made.items) if not row["at_chance"]]
-    assert away == []
+    rows = {row["shortcut"]: row for row in shortcut_rows(made.items)}
+    for name in ("reality", "lower_order", "first", "last", "most"):
+        assert rows[name]["accuracy"] == pytest.approx(1 / 3)
+    # Another version of the solver may choose other scenes, on which one of the rest can be lucky.
+    assert [row for row in rows.values() if abs(row["accuracy"] - 1 / 3) > 0.05] == []

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.plan.cells import Invalid, Plan
@@ -156,7 +157,8 @@ def _variations(design: Design, document: Document) -> Sequence[Variation]:
             broken = (design.broken_constraint(document, each, variation) for each in conditions)
             return any(fault is None for fault in broken)
 
-        seed = f"{design.seed} {document.source}"
+        # The folder changes nothing: a study that somebody else was given draws the same.
+        seed = f"{design.seed} {Path(document.source).name}"
         return drawn_variations(document, design.variations, seed, keeps)
     return listed_variations(design.variations)
 

@@ -320,3 +320,9 @@ def test_unknown_shortcuts_are_refused(folder):
 def test_shortcuts_that_learn_cannot_be_balanced(folder):
     with pytest.raises(InputError, match="words learns from the items themselves"):
         bn.Study([str(folder / "boxes.yaml")], balance=["words"])
+
+
+def test_the_folder_of_a_study_changes_no_item(folder, monkeypatch):
+    there = bn.Study([str(folder / "boxes.yaml")], variations=2).items()
+    monkeypatch.chdir(folder)
+    assert bn.Study(["boxes.yaml"], variations=2).items().items == there.items
