@@ -5,19 +5,23 @@ rows is counted. The column `copy_of` marks the others.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from beliefnest.plan.cells import digest
-
-if TYPE_CHECKING:  # The folder knows its kind, and that its table.
-    from beliefnest.studies.study_folder import ResultFolder
 
 _OWN = ("key", "seed", "run")
 """Keys of a cell's file that identify the cell and are no part of its result."""
 
 
+class CellResults(Protocol):
+    """Folder that has the results of cells."""
+
+    def cell(self, name: str) -> dict[str, Any] | None:
+        """Return the result of a cell; None: it has none."""
+
+
 def rows_with_copies(
-    folder: "ResultFolder",
+    folder: CellResults,
     plan: Mapping[str, Any],
     rows_of: Callable[[Mapping[str, Any], Mapping[str, Any]], Iterable[dict[str, Any]]],
 ) -> Iterator[dict[str, Any]]:

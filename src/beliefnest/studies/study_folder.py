@@ -17,6 +17,7 @@ from beliefnest.locking import is_lock
 from beliefnest.plan.spending import append_line
 from beliefnest.plan.terms import Terms
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
+from beliefnest.studies.copies import CellResults
 from beliefnest.studies.forms import FailedCell, PeopleForm, PlanKind, SecondsForm, read_marked
 from beliefnest.studies.kinds import CellKind, kind_named
 from beliefnest.world.texts import quoted
@@ -44,7 +45,7 @@ class PersonCell:
     found: Mapping[str, Any]
 
 
-class ResultFolder(Protocol):
+class ResultFolder(CellResults, Protocol):
     """Folder with the results of the cells of a plan: of a study, or of a run."""
 
     @property
@@ -61,9 +62,6 @@ class ResultFolder(Protocol):
 
     def plan(self) -> dict[str, Any]:
         """Return the latest plan."""
-
-    def cell(self, name: str) -> dict[str, Any] | None:
-        """Return the result of a cell; None: it has none."""
 
     def people(self) -> list[dict[str, Any]]:
         """Return the entries of all cells that participants answered."""

@@ -3,16 +3,13 @@
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from beliefnest.llm.failures import NOT_ASKED
 from beliefnest.plan.scenario_cells import LABEL, LIST
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.allocation import PARTICIPANT
-from beliefnest.studies.copies import rows_with_copies
-
-if TYPE_CHECKING:  # The folder knows its kind, and that its table.
-    from beliefnest.studies.study_folder import ResultFolder
+from beliefnest.studies.copies import CellResults, rows_with_copies
 
 _FAILED = "error"
 _NO_ANSWER = "no_answer"
@@ -107,7 +104,7 @@ class Table:
         """Names of the columns that the page shows after `first` and those of variations."""
         return tuple(each.name for each in self.columns if each.shown)
 
-    def rows(self, folder: "ResultFolder", plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    def rows(self, folder: CellResults, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield the rows of the cells of a plan, see `rows_with_copies`."""
         varied = variation_columns(plan)
 

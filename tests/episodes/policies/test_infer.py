@@ -295,7 +295,12 @@ def test_an_episode_of_who_infers_goes_on_and_replays(tmp_path: Path) -> None:
         ),
         ("helps: bob", "helps: zoe", "bring.yaml:11: .*'zoe' is none"),
         ("helps: bob", "helps: ann", "bring.yaml:11: .*'ann' has no goal of its own"),
-        ("{helps: bob}", "{helps: bob, ticks: 3}", "bring.yaml:11: .*beside other keys"),
+        ("{helps: bob}", "{helps: bob, ticks: 3}", "bring.yaml:11: .*has nothing to `reach`"),
+        (
+            "{helps: bob}",
+            "{helps: bob, never: [{agent: bob, at: [11, 1, 1]}]}",
+            "bring.yaml:11: .*beside other keys",
+        ),
         (
             "north: {reach: [{agent: bob, at: [11",
             "north: {reach: [{agent: bob, at: [9",
