@@ -101,5 +101,6 @@ def _impossible(
     rates = (f"{name} is right in {listed(counts)}" for name, counts in counts_by_name.items())
     return (
         "no part of the variations has these shortcuts at chance: "
-        f"{'; '.join(rates)}; vary what the answers depend on, or add conditions"
+        f"{'; '.join(rates)}; draw more variations, vary what the answers depend on, or add "
+        "conditions"
     )
