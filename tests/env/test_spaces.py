@@ -223,7 +223,7 @@ def test_options_of_wrong_kinds_are_refused_in_one_line(options: Any, message: s
     with pytest.raises(bn.InputError, match=message):
         parallel_env("sally-anne", **options)
     with pytest.raises(bn.InputError, match="None is no scenario; give a name, a file, or an"):
-        parallel_env(None)  # type: ignore[arg-type]
+        parallel_env(None)  # type: ignore[arg-type]  # the wrong input itself
 
 
 def test_functions_of_the_user_return_numbers_and_truths() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 SOURCES = Path(__file__).parents[2] / "src" / "beliefnest"
 PLAYERS = {
-    # What plays once, and the cells that call it. An audit plays a story again under other rules.
+    # Functions that play once, and the cells that call them. An audit plays a story by other rules.
     "run_scenario": {"plan/scenario_cells.py"},
     "answer_story": {"suites/stories/cells.py", "suites/stories/audit.py"},
     "judge": {"suites/films/cells.py"},
@@ -17,7 +17,7 @@ PLAYERS = {
     # One ledger, beside the times of cells.
     "SharedBudget": set(),
     "append_line": {"plan/spending.py", "studies/study_folder.py"},
-    # What plays many: a run, a study, a study played again, a suite.
+    # Commands that play many: a run, a study, a study played again, a suite.
     "run_cells": {
         *("cli/run.py", "studies/study.py", "studies/reproducing.py", "suites/playing.py"),
     },

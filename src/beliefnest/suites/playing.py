@@ -123,6 +123,7 @@ def suite_kind(
         apart=(),
         means=dict.fromkeys(means, False),
     )
+    # The form of a row is known only here, which mypy takes for no type.
     return CellKind(name, _SuitePlan, _PlayedRows[row], table, subject="suite")  # type: ignore[valid-type]
 
 
