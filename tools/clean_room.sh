@@ -5,7 +5,12 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
+# A command leaves a process behind that compiles kernels: it writes here until it has ended.
+end() {
+  pkill -f "$room/" || true
+  until rm -rf "$room"; do sleep 1; done
+}
+trap end EXIT
 export PYTHONPATH=''
 
 # Paths of the Pythons from 3.11 on, one of each version, on the PATH or kept by pyenv.

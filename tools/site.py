@@ -59,7 +59,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for paper in [*(ROOT / each for each in PAPERS), *sorted((ROOT / "design").glob("*.md"))]:
         name = project_page(paper)
         files.append(File.generated(config, name, content=paper.read_text(encoding="utf-8")))
-    for example in sorted((ROOT / "examples").glob("*.*")):
+    for example in sorted((ROOT / "examples").rglob("*.*")):
         files.append(File.generated(config, project_page(example), abs_src_path=str(example)))
     return files
 
