@@ -16,6 +16,7 @@ import numpy.typing as npt
 from beliefnest.belief.arrays import Changes, EntryFacts, Span
 from beliefnest.belief.columns import Columns, place_of
 from beliefnest.belief.context import BeliefContext, SavedWriting
+from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.grounds import Basis, PerceivedEvent
 from beliefnest.belief.holdings import Whereabouts
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts, SavedHoldings
@@ -319,7 +320,7 @@ class Forest:
 
     def perceive_at_first(self) -> None:
         """Let all nodes but node 0 perceive the present state, with nothing happening."""
-        self._perceive(self.table.below(0))
+        self._perceive(self.table.below(0), self.context.first_perceptions)
 
     def skip(self, tick: int) -> None:
         """Count an entry that concerns no node of this forest."""
@@ -342,7 +343,7 @@ class Forest:
         self.holdings.edit(node, blocks, contents, tick)
         self.position += 1
         self.tick = tick
-        self._perceive(self.table.below(node))
+        self._perceive(self.table.below(node), None)
 
     def _let_read(self) -> None:
         readers, self._readers = self._readers, {}
@@ -483,8 +484,11 @@ class Forest:
             self.verdicts = testimony.verdicts()
         return entry + 1
 
-    def _perceive(self, below: npt.NDArray[np.bool_]) -> None:
-        """Let the nodes that `below` marks perceive the present state, with nothing happening."""
+    def _perceive(self, below: npt.NDArray[np.bool_], first: FirstPerceptions | None) -> None:
+        """Let the nodes that `below` marks perceive the present state, with nothing happening.
+
+        `first` is a cache for nodes that have perceived nothing yet; None: they have.
+        """
         context = self.context
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = EntryFacts(
@@ -502,11 +506,10 @@ class Forest:
         parts = (level & below for level in self.table.levels()) if by_level else (below,)
         for part in parts:
             nodes, weighing, changes = self.table.nodes(), self.table.weighing(), self._changes(0)
-            first = context.first_perceptions
             # A cached result of another nest does not fit where numbers of signs and unique items
             # differ between nests, and where rows of chunks do.
             is_own = context.signs or by_level or context.space.chunks is not None
-            if is_own or not first.keeps(nodes, weighing):
+            if first is None or is_own or not first.keeps(nodes, weighing):
                 self._pass(facts, changes, Span(0, 1, False, 0), part)
             else:
                 poses = self.poses.arrays()

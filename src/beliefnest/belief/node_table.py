@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import UNKNOWN, Nodes, Weighing
+from beliefnest.belief.arrays import UNKNOWN, Nodes, Poses, Space, Weighing
 from beliefnest.belief.chunk_pool import NOTHING, ChunkPool, cut_grids
 from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.grounds import Basis
@@ -52,6 +52,8 @@ class SavedNode:
     weighing: dict[str, bytes] = field(default_factory=dict)
 
 
+_TERRAINS = 16
+"""Number of states of nodes' blocks that are kept for later readers."""
 _SAVED = (
     *("pose", "equipment", "seen_at", "current"),
     *("basis_at", "basis_source", "basis_current"),
@@ -106,6 +108,7 @@ class NodeTable:
         # Results of the last call for the next one, until `link`: geometry of the blocks that were
         # set last, and rows of the chunks of another table that were copied.
         self._coded: tuple[Terrain, NodeRow] | None = None
+        self._terrains: dict[tuple[int, int], Terrain] = {}
         self._copied: tuple[NodeTable, NodeRow] | None = None
 
     def nodes(self) -> Nodes:
@@ -336,8 +339,7 @@ class NodeTable:
 
     def worn(self, node: int, agent: int) -> Collection[str]:
         """Return items that an agent is believed to wear or hold."""
-        pose = self.equipment(node, agent)
-        details = None if pose < 0 else self.poses.details(pose)
+        details = self.poses.details(self.equipment(node, agent))
         return () if details is None else details.equipment.values()
 
     def take_off(self, node: int, agent: int, item: str) -> None:
@@ -548,7 +550,13 @@ class NodeTable:
         """Return the numbers of a node's blocks."""
         if self.pool is not None:
             return self.pool.terrain(self._rows["rows"][node])
-        return Terrain.of(self._rows["blocks"][node].reshape(self.context.box.shape))
+        key = node, int(self._rows["versions"][node])
+        if key not in self._terrains:
+            if len(self._terrains) == _TERRAINS:
+                self._terrains.clear()
+            grid = self._rows["blocks"][node].reshape(self.context.box.shape)
+            self._terrains[key] = Terrain.of(grid)
+        return self._terrains[key]
 
     def codes(self, node: int) -> tuple[npt.NDArray[np.uint16], NodeRow]:
         """Return the geometry of a node of a box with a pool: its chunks, and one by place."""
@@ -588,8 +596,7 @@ class NodeTable:
 
         None: the pose is unknown, or it was claimed or given and nobody was seen in it.
         """
-        pose = self.pose(node, agent)
-        return None if pose < 0 else self.poses.details(pose)
+        return self.poses.details(self.pose(node, agent))
 
     def seen_at(self, node: int, agent: int) -> int:
         """Return the last tick at which an agent's pose was current, for one that no longer is."""
@@ -614,26 +621,21 @@ class NodeTable:
         """Return those of some cells that the present owner of a node sees in the parent node."""
         from beliefnest.belief import seeing
 
-        parent = self.parent(node)
-        eye = self.pose(parent, self.owner(node))
         wanted = np.array([*cells], dtype=np.int64)
-        space, poses, shapes = self.context.space, self.poses.arrays(), self._shapes(parent)
-        seen = seeing.sees_cells(space, poses, *shapes, eye, wanted)
-        return set(wanted[seen].tolist())
+        return set(wanted[seeing.sees_cells(*self._look(node), wanted)].tolist())
 
-    def _shapes(self, node: int) -> tuple[NodeRow, NodeRow]:
-        """Return the codes and the rows through which the children of a node look."""
-        rows = self._rows["rows"][node]
-        return (self._rows["codes"][node] if self.pool is None else self.pool.codes.ravel()), rows
+    def _look(self, node: int) -> tuple[Space, Poses, NodeRow, NodeRow, int]:
+        """Return the first arguments of kernels of `seeing` for the present owner of a node."""
+        parent = self.parent(node)
+        codes = self._rows["codes"][parent] if self.pool is None else self.pool.codes.ravel()
+        rows, eye = self._rows["rows"][parent], self.pose(parent, self.owner(node))
+        return self.context.space, self.poses.arrays(), codes, rows, eye
 
     def sees_point(self, node: int, point: Point) -> bool:
         """Return True if the present owner of a node sees a point (scenario coordinates)."""
         from beliefnest.belief import seeing
 
-        parent = self.parent(node)
-        eye = self.pose(parent, self.owner(node))
-        space, poses, shapes = self.context.space, self.poses.arrays(), self._shapes(parent)
-        return seeing.sees_point(space, poses, *shapes, eye, point)
+        return seeing.sees_point(*self._look(node), point)
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Return True if a node's block is current (semantics, section 5.4)."""

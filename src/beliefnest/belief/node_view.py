@@ -245,8 +245,7 @@ class NodeView:
         forest, node = self._forest, self._node
         table, poses = forest.table, forest.table.poses
         inventory, complete = forest.holdings.inventory(node, number)
-        dressed = table.equipment(node, number)
-        seen = poses.details(dressed) if dressed >= 0 else None
+        seen = poses.details(table.equipment(node, number))
         health, food = forest.holdings.vitals(node, number)
         pose = table.pose(node, number)
         if pose < 0:

@@ -156,8 +156,8 @@ class PoseTable:
         return yaw, pitch
 
     def details(self, pose: int) -> PoseDetails | None:
-        """Return the details of a pose; None for a pose in which nobody was seen."""
-        return self._table[int(self._details.view()[pose])]
+        """Return the details of a pose; None if it is unknown, or nobody was seen in it."""
+        return None if pose < 0 else self._table[int(self._details.view()[pose])]
 
     def is_recorded(self, pose: int) -> bool:
         """Return True if the timeline recorded a pose. False: it was only believed at a fork."""

@@ -258,17 +258,15 @@ class Episode:
         """True if the episode has ended."""
         if self._nest is None:
             return False
-        return self.is_decided or self._is_at_end
+        is_last = len(self._parts) >= self.task.form.rounds * len(self._slots)
+        is_spent = self._budget.is_spent(self.nest.tick - self._start, self.spent)
+        return self.is_decided or is_last or is_spent
 
     @property
     def is_decided(self) -> bool:
         """True if the goal is reached, or can no longer be reached."""
         progress = self._watch()
         return progress.reached is not None or progress.violated is not None
-
-    @property
-    def _is_at_end(self) -> bool:
-        return len(self._parts) >= self.task.form.rounds * len(self._slots) or self._is_spent()
 
     @property
     def success(self) -> bool:
@@ -548,9 +546,6 @@ class Episode:
             self._parts[-1] = play_part(nest, self._parts, ticks, end)
             self._watch()
             self._keep()
-
-    def _is_spent(self) -> bool:
-        return self._budget.is_spent(self.nest.tick - self._start, self.spent)
 
     def _watch(self) -> Progress:
         """Return the progress of the task's goal."""

@@ -111,7 +111,8 @@ def keep_start(nest: Writes, start: EpisodeStart) -> None:
 def keep_branch(nest: Writes, name: str, branch: Branch) -> None:
     """Store the record of a branch up to now."""
     kept = nest.kept(_BRANCHES)
-    branches = {} if kept is None else msgspec.json.decode(kept, type=dict[str, Branch])
+    # Other branches stay as they were written.
+    branches: dict[str, Any] = msgspec.json.decode(kept or b"{}", type=dict[str, msgspec.Raw])
     branches[name] = branch
     nest.keep(_BRANCHES, msgspec.json.encode(branches))
 

@@ -206,7 +206,7 @@ class Task:
         """Scenario of the task; its script runs before the first round."""
         return Scenario.from_mapping(self.form.scenario, source=f"task {self.name}")
 
-    @property
+    @cached_property
     def agents(self) -> tuple[str, ...]:
         """Names of all agents, sorted."""
         return tuple(sorted(self.form.scenario["agents"]))
@@ -218,7 +218,7 @@ class Task:
             name for name in self.agents if name not in self.form.policies
         )
 
-    @property
+    @cached_property
     def goal(self) -> Goal:
         """Goal that makes an episode a success."""
         return goal_of(self.form.goal, self.form.scenario["agents"])
@@ -230,10 +230,14 @@ class Task:
 
     def told_goal(self, agent: str) -> Goal:
         """Return the goal of an agent as the agent is told it."""
-        entry = self.form.goals.get(agent, self.form.goal)
-        return goal_of(entry, self.form.scenario["agents"])
+        return self._told_goals.get(agent, self.goal)
 
-    @property
+    @cached_property
+    def _told_goals(self) -> Mapping[str, Goal]:
+        agents = self.form.scenario["agents"]
+        return {agent: goal_of(entry, agents) for agent, entry in self.form.goals.items()}
+
+    @cached_property
     def possible_goals(self) -> Mapping[str, Mapping[str, Goal]]:
         """By agent and name the goals that it may have, as far as the others know.
 

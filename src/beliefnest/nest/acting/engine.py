@@ -299,7 +299,7 @@ class Engine:
             state = internal_state_at(journal, present(journal, info.key))
             journal.append(info.key, [Edit(info.head, path, blocks, containers)], info.head)
             note_internal_state(journal, present(journal, info.key), state)
-            if path in self.bodies:
+            if path in self.bodies and (blocks or containers or self.world.has_physics):
                 self.bodies.of(path).set_state(self.bodies.recorded(info.key))
 
     @property
