@@ -22,6 +22,10 @@ def run_items(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The study or the folder is wrong, or a script failed.
     """
+    if options.functional:
+        from beliefnest.cli.functional import run_functional
+
+        return run_functional(options)
     set_options = _set_options(options)
     with progress_on(options.study.stem) as on_progress:
         made = Study.load(options.study).items(**set_options, on_item=on_progress)

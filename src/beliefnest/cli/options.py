@@ -396,6 +396,10 @@ class ItemsOptions:
     changes: Annotated[
         str | None, typer.Option(metavar="TEXT", help="Changes in this version.")
     ] = None
+    functional: Annotated[
+        bool, typer.Option("--functional", help="Certify which order the episodes of tasks need.")
+    ] = False
+    jobs: Annotated[int, typer.Option(min=1, help="Processes, with --functional.")] = 2
     json: Json = False
 
 
