@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import at_night
 
-from beliefnest.perception.eyes import change_code
+from beliefnest.perception.compiling import compiled
+from beliefnest.perception.eyes import set_code
 from beliefnest.perception.sight import Sight
 from beliefnest.world.registry import Registry
 
@@ -212,6 +213,12 @@ def test_points_agree_with_the_reference(world, eye, points):
     assert sight.geometry(blocks, origin).sees_points(eye, 0, 0, points).tolist() == expected
     for point, free in zip(points, expected, strict=True):
         assert (sight.geometry(blocks, origin).blocker(eye, point) is None) == free
+
+
+@compiled
+def change_code(codes, sizes, reaches, cell, code):
+    """Call `set_code`, which only kernels can call."""
+    set_code(codes, sizes, reaches, cell, code)
 
 
 @settings(max_examples=at_night(2000, 100))

@@ -7,7 +7,7 @@ import numpy as np
 
 from beliefnest.perception.beams import Beam, Eye, in_field, in_reach, sees_block
 from beliefnest.perception.codes import FULL, INTRUDED, OWN, Reaches
-from beliefnest.perception.compiling import compiled, inlined, inner, merged
+from beliefnest.perception.compiling import inlined, inner, merged
 from beliefnest.perception.rays import (
     GridCell,
     RayScene,
@@ -121,9 +121,3 @@ def set_code(codes: Codes, sizes: GridCell, reaches: Reaches, cell: GridCell, co
         return
     for side in range(6):
         _update_intruded(codes, sizes, reaches, neighbour(cell, side))
-
-
-@compiled
-def change_code(codes: Codes, sizes: GridCell, reaches: Reaches, cell: GridCell, code: int) -> None:
-    """Call `set_code`; kernels call that one, which has no wrapper for Python."""
-    set_code(codes, sizes, reaches, cell, code)
