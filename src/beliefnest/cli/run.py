@@ -5,7 +5,7 @@ import math
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import replace
 from datetime import datetime
 from functools import partial
@@ -16,6 +16,7 @@ from rich.text import Text
 
 from beliefnest.cli.console import Printed, report_text, stdout
 from beliefnest.cli.folder import RunFolder, kept_scenario_file
+from beliefnest.cli.gallery import Gallery
 from beliefnest.cli.kernels_ahead import kernels_ahead
 from beliefnest.cli.matrix import score_runs, score_table
 from beliefnest.cli.options import RunOptions
@@ -90,21 +91,19 @@ def _run_in(
 ) -> int:
     """Run the conditions in an open folder; return the exit status."""
     first, settings = scenarios[0], options.settings
-    cells = plan_run_cells(scenarios, settings, folder, options.embody or ())
+    gallery = Gallery()
+    cells = plan_run_cells(scenarios, settings, folder, options.embody or (), gallery)
     run = _Run(options, folder, cells)
     status: RunStatus = "failed"
     worker = partial(Worker, launch=launch, seed=options.seed, caught=ModelError)
     try:
-        with (
-            noted_warnings() as warned,
-            kernels_ahead(),
+        with noted_warnings() as warned, kernels_ahead(), closing(gallery):
             # It is told with the other failures.
-            suppress(UnavailableModelError),
-        ):
-            run_cells(cells, run, run.terms, 1, "loky", lambda progress: None, ahead, worker)
-        if len(cells[0].pictures) == len(cells) > 1:
-            shown = cells[0].pictures[: len(scenarios)]
-            overview(shown, first.description or first.name).save(folder.picture)
+            with suppress(UnavailableModelError):
+                run_cells(cells, run, run.terms, 1, "loky", lambda progress: None, ahead, worker)
+            if len(gallery.pictures) == len(cells) > 1:
+                shown = gallery.pictures[: len(scenarios)]
+                overview(shown, first.description or first.name).save(folder.picture)
         status = "failed" if run.failures else "done"
     except KeyboardInterrupt:
         status = "interrupted"

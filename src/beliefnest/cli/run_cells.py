@@ -9,12 +9,11 @@ from typing import Any
 from beliefnest.cli.accounts import accounts
 from beliefnest.cli.console import progress_on
 from beliefnest.cli.folder import ConditionFolder, RunFolder
+from beliefnest.cli.gallery import Gallery
 from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.report import outcome_json
 from beliefnest.cli.visits import visited
-from beliefnest.files import replace_file
 from beliefnest.nest.face.nest import Nest
-from beliefnest.pictures.overview import ConditionPicture, overview
 from beliefnest.plan.scenario_cells import Cell, CellKey, content_of
 from beliefnest.plan.terms import PlayStage
 from beliefnest.scenarios.scenario import Scenario
@@ -39,13 +38,13 @@ class RunCell(Cell):
         place: Folder of the cell.
         is_flat: True if the run has one model and one repeat: no title names them.
         embody: Paths of beliefs that people visit while it is played.
-        pictures: Pictures of the cells of the run that were played; it adds its own.
+        gallery: Pictures of the run, which draws that of the cell.
     """
 
     place: ConditionFolder
     is_flat: bool
     embody: Sequence[str]
-    pictures: list[ConditionPicture]
+    gallery: Gallery
 
     @property
     def title(self) -> str:
@@ -58,7 +57,7 @@ class RunCell(Cell):
         return ", ".join(parts)
 
     def play(self, stage: PlayStage) -> dict[str, Any]:
-        """Play and draw the scenario, write everything into its folder, and return the result.
+        """Play the scenario, have all of it written into its folder, and return the result.
 
         Raises:
             BeliefNestError: The scenario, the world or the model failed.
@@ -75,13 +74,9 @@ class RunCell(Cell):
             with Journal.read(place.store) as journal:
                 picture = read_condition(nest, journal, outcome)
             reports = accounts(nest, outcome)
-            figure = overview([picture], picture.title)
-            figure.save(place.picture)
-            replace_file(place.picture_svg, figure._repr_html_())
             readings = {"readings": _readings(nest)} if "claims_from" in self.key.setting else {}
         result = {**outcome_json(outcome, self.key.model, place.path, reports), **readings}
-        place.write_result(result)
-        self.pictures.append(picture)
+        self.gallery.add(picture, place, result)
         return {"error": None, **result}
 
 
@@ -93,7 +88,11 @@ def _readings(nest: Nest) -> dict[str, object]:
 
 
 def plan_run_cells(
-    scenarios: Sequence[Scenario], setting: dict[str, Any], folder: RunFolder, embody: Sequence[str]
+    scenarios: Sequence[Scenario],
+    setting: dict[str, Any],
+    folder: RunFolder,
+    embody: Sequence[str],
+    gallery: Gallery,
 ) -> list[RunCell]:
     """Return all cells in the order of play.
 
@@ -104,9 +103,9 @@ def plan_run_cells(
         setting: Settings of the run, with `models` and `repeat`.
         folder: Folder of the run.
         embody: Paths of beliefs that people visit.
+        gallery: Pictures of the run.
     """
     models, repeats = setting["models"], setting["repeat"]
-    pictures: list[ConditionPicture] = []
     flat = len(models) == 1 and repeats == 1
     planned = []
     for repeat in range(1, repeats + 1):
@@ -134,7 +133,7 @@ def plan_run_cells(
                         place=place,
                         is_flat=flat,
                         embody=embody,
-                        pictures=pictures,
+                        gallery=gallery,
                     )
                 )
     return planned
