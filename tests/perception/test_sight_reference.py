@@ -10,11 +10,13 @@ from hypothesis import strategies as st
 from tests.profiles import at_night
 
 from beliefnest.perception.compiling import compiled
-from beliefnest.perception.eyes import set_code
+from beliefnest.perception.eyes import open_room, set_code
 from beliefnest.perception.sight import Sight
 from beliefnest.world.registry import Registry
 
 REGISTRY = Registry.load()
+
+
 UNKNOWN = -1
 HEIGHTS = (1.62, 0.9, 0.05)
 PALETTE = [
@@ -238,6 +240,56 @@ def test_a_changed_geometry_equals_one_built_anew(world, changes):
         code = int(sight.state_codes[state])
         change_code(codes.reshape(-1), codes.shape, sight.reaches, cell, code)
     assert np.array_equal(codes, sight.geometry(changed, origin).codes)
+
+
+CLOSERS = [
+    ["stone"],
+    ["stone", "oak_door[facing=north,half=lower]", "oak_door[facing=north,half=upper]"],
+    ["oak_door[facing=south,half=lower]", "oak_door[facing=north,half=upper]", "stone"],
+    ["oak_slab[type=top]", "stone", "oak_stairs[facing=south,half=top]"],
+    ["oak_slab[type=bottom]", "stone", "oak_stairs[facing=south,half=top]"],
+    ["stone", "glass"],
+]
+
+
+@compiled
+def room_seen(scene, eye):
+    """Call `open_room`, which only kernels can call."""
+    return open_room(scene, eye)
+
+
+@settings(max_examples=at_night(2000, 150))
+@given(
+    world=worlds(),
+    eye=st.tuples(coordinate, coordinate, coordinate),
+    axis=st.integers(0, 2),
+    layer=st.integers(0, 9),
+    closers=st.sampled_from(CLOSERS),
+    seed=st.integers(0, 99),
+)
+def test_nothing_is_seen_beyond_the_open_room(world, eye, axis, layer, closers, seed):
+    blocks, origin = world
+    where = [slice(None)] * 3
+    where[axis] = layer % blocks.shape[axis]
+    states = [REGISTRY.state_id(text) for text in closers]
+    blocks[tuple(where)] = np.random.default_rng(seed).choice(states, blocks[tuple(where)].shape)
+    geometry = Sight(REGISTRY, None, 360).geometry(blocks, origin)
+    low, high = room_seen(geometry._scene, tuple(e + 1 for e in eye))
+    there = tuple(e + o for e, o in zip(eye, origin, strict=True))
+    for cell in np.argwhere(geometry.visible_blocks(there, 0, 0)):
+        assert all(low <= cell) and all(cell < high), (low, high, cell)
+
+
+def test_a_wall_with_a_shut_door_ends_the_open_room():
+    blocks = np.zeros((9, 4, 3), dtype=np.int32)
+    blocks[6] = REGISTRY.state_id("stone")
+    for height, half in enumerate(("lower", "upper"), 1):
+        blocks[6, height, 1] = REGISTRY.state_id(f"oak_door[facing=east,half={half}]")
+    geometry = Sight(REGISTRY, None, 360).geometry(blocks, (0, 0, 0))
+    assert room_seen(geometry._scene, (2.5, 2.5, 2.5)) == ((0, 0, 0), (7, 4, 3))
+    blocks[6, 1, 1] = REGISTRY.state_id("oak_door[facing=east,half=lower,open=true]")
+    geometry = Sight(REGISTRY, None, 360).geometry(blocks, (0, 0, 0))
+    assert room_seen(geometry._scene, (2.5, 2.5, 2.5)) == ((0, 0, 0), (9, 4, 3))
 
 
 def _state_by_shape():

@@ -318,10 +318,6 @@ class Forest:
             self.perceived_events.set(node, 0, other.perceived_events.of(source, count))
         self.table.link()
 
-    def perceive_at_first(self) -> None:
-        """Let all nodes but node 0 perceive the present state, with nothing happening."""
-        self._perceive(self.table.below(0), self.context.first_perceptions)
-
     def skip(self, tick: int) -> None:
         """Count an entry that concerns no node of this forest."""
         self._let_read()
@@ -343,7 +339,7 @@ class Forest:
         self.holdings.edit(node, blocks, contents, tick)
         self.position += 1
         self.tick = tick
-        self._perceive(self.table.below(node), None)
+        self.perceive(node)
 
     def _let_read(self) -> None:
         readers, self._readers = self._readers, {}
@@ -484,12 +480,12 @@ class Forest:
             self.verdicts = testimony.verdicts()
         return entry + 1
 
-    def _perceive(self, below: npt.NDArray[np.bool_], first: FirstPerceptions | None) -> None:
-        """Let the nodes that `below` marks perceive the present state, with nothing happening.
+    def perceive(self, node: int, first: FirstPerceptions | None = None) -> None:
+        """Let the nodes below a node perceive the present state, with nothing happening.
 
         `first` is a cache for nodes that have perceived nothing yet; None: they have.
         """
-        context = self.context
+        context, below = self.context, self.table.below(node)
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = EntryFacts(
             np.array([self.tick], dtype=np.int32),

@@ -481,7 +481,7 @@ class HoldingsTable:
             state >= 0
             and not self._context.holds[state]
             and bool(self._table.sees_cells(node, (cell,)))
-            and self._table.block_is_current(parent, cell)
+            and cell in self._table.current_blocks(parent, (cell,))
         )
 
     def _see_into(self, node: int, tick: int) -> set[int]:

@@ -105,7 +105,7 @@ def initial_forest(
         table.leave(each)
     table.link()
     forest = Forest(events, table, holdings, snapshot.tick)
-    forest.perceive_at_first()
+    forest.perceive(0, context.first_perceptions)
     return forest
 
 

@@ -59,11 +59,15 @@ from beliefnest.belief.seeing import eye_of, sees_agent, sees_cell
 from beliefnest.perception.beams import Eye
 from beliefnest.perception.chunks import chunk_in, place_at
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
+from beliefnest.perception.eyes import open_room
 from beliefnest.perception.options import SenseLimits
 from beliefnest.perception.percept import is_common, perceives
 from beliefnest.perception.rays import GridCell, RayScene, lower, upper
 from beliefnest.world.event_kinds import Sense
 from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
+
+Moment = tuple[int, int, int]
+"""Number of an entry, its tick, and the node that is updated."""
 
 _WORD = 64
 _ABSENT, _STILL, _MOVED = 0, 1, 2
@@ -163,12 +167,6 @@ def _put(space: Space, grids: Grids, node: int, cell: int, state: int) -> None:
         _mark(space, grids, child, place)
 
 
-@compiled
-def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
-    """Call `_put`; kernels call that one, which has no wrapper for Python."""
-    _put(space, grids_of(nodes), whole(node), whole(cell), whole(state))
-
-
 @inlined
 def _handed_source(bases: Bases, parent: int, spot: int) -> int:
     """Return the source that an owner takes over for a tracked cell that it sees in its parent.
@@ -195,20 +193,13 @@ def _settle(looks: Looks, bases: Bases, node: int, last: int) -> None:
 
 @inner
 def _put_noted(
-    space: Space,
-    grids: Grids,
-    bases: Bases,
-    changes: Changes,
-    entry: int,
-    tick: int,
-    node: int,
-    cell: int,
-    state: int,
+    space: Space, grids: Grids, bases: Bases, changes: Changes, at: Moment, cell: int, state: int
 ) -> None:
     """Call `_put`. Add a row to `changes` if the old or the new block shows a container.
 
     The row carries the basis of the new block: that of the parent, from which the owner took it.
     """
+    entry, tick, node = at
     old = _held(space, grids, node, place_of(space.chunks, space, cell))
     if old == state:
         return
@@ -237,7 +228,7 @@ def put_all(
     cell: int,
     states: npt.NDArray[np.int64],
 ) -> None:
-    """Call `put` for several nodes: `states[k]` is for node `which[k]`."""
+    """Call `_put` for several nodes: `states[k]` is for node `which[k]`."""
     grids = grids_of(nodes)
     for number in range(len(which)):
         _put(space, grids, whole(which[number]), whole(cell), whole(states[number]))
@@ -265,9 +256,8 @@ def _apply_entry(
             looks.seen_at[0, who] = facts.tick[entry]
     for row in range(facts.block_at[entry], facts.block_at[entry + 1]):
         cell, state = whole(facts.block_cell[row]), whole(facts.block_state[row])
-        _put_noted(
-            space, grids, bases, changes, entry, whole(facts.tick[entry]), whole(0), cell, state
-        )
+        at = whole(entry), whole(facts.tick[entry]), whole(0)
+        _put_noted(space, grids, bases, changes, at, cell, state)
     for spot in range(len(bases.tracked)):
         is_known = _held(space, grids, whole(0), whole(bases.places[spot])) != UNKNOWN
         bases.basis_current[0, spot] = is_known
@@ -356,26 +346,18 @@ def _observe_agents(
 
 
 @inlined
-def _in_range(place: float, far: float, size: int) -> tuple[int, int]:
+def _in_range(place: float, far: float, first: int, end: int) -> tuple[int, int]:
     """Return the first cell of an axis with its middle within a distance, and one after the last.
 
-    There may be one cell more on each side.
+    There may be one cell more on each side. Cells before `first` and from `end` on are left out.
     """
-    low, high = place - 1.0 - far, place + 1.0 + far
-    edge = float(size)
-    return int(lower(upper(low, 0.0), edge)), int(lower(upper(high, 0.0), edge))
+    low, high, least, most = place - 1.0 - far, place + 1.0 + far, float(first), float(end)
+    return int(lower(upper(low, least), most)), int(lower(upper(high, least), most))
 
 
 @merged
 def _observe_cells(
-    space: Space,
-    grids: Grids,
-    bases: Bases,
-    changes: Changes,
-    entry: int,
-    tick: int,
-    node: int,
-    eye: Eye,
+    space: Space, grids: Grids, bases: Bases, changes: Changes, at: Moment, eye: Eye
 ) -> None:
     """Take over the pending blocks that the owner of a node sees, where grids are dense.
 
@@ -383,6 +365,7 @@ def _observe_cells(
     words of 64 bits with a set bit. Words lie in the order of columns, so a word that two columns
     share is visited once. `put` clears the bit of each block taken over.
     """
+    node = at[2]
     parent = whole(grids.parent[node])
     scene = _scene(space, grids, parent)
     ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
@@ -393,16 +376,19 @@ def _observe_cells(
         first += 1
     while first < last and grids.pending[node, last] == 0:
         last -= 1
-    x0, x1 = _in_range(px - 1.0, far, space.sizes[0] - 2)
+    if first > last:
+        return
+    (x0, y0, low), (x1, y1, high) = open_room(scene, eye[0])
+    x0, x1 = _in_range(px - 1.0, far, x0, x1)
     x0 = upper(x0, first * _WORD // (ny * nz))
     x1 = lower(x1, (last * _WORD + _WORD) // (ny * nz) + 1)
-    y0, y1 = _in_range(py - 1.0, far, ny)
+    y0, y1 = _in_range(py - 1.0, far, y0, y1)
     word = 0
     for x in range(x0, x1):
         for y in range(y0, y1):
             dx, dy = x + 1.5 - px, y + 1.5 - py
             near = math.sqrt(upper(far * far - dx * dx - dy * dy, 0.0))
-            z0, z1 = _in_range(pz - 1.0, near, nz)
+            z0, z1 = _in_range(pz - 1.0, near, low, high)
             row = (x * ny + y) * nz
             word = upper(word, (row + z0) // _WORD)
             while word * _WORD < row + z1:
@@ -410,9 +396,11 @@ def _observe_cells(
                 for place in range(_WORD if bits != 0 else 0):
                     if (bits >> np.uint64(place)) & np.uint64(1):
                         cell = word * _WORD + place
-                        if sees_cell(space, scene, eye, grid_cell(space, cell)):
+                        i, j, k = there = grid_cell(space, cell)
+                        is_near = x0 < i <= x1 and y0 < j <= y1 and low < k <= high
+                        if is_near and sees_cell(space, scene, eye, there):
                             state = whole(grids.blocks[parent, cell])
-                            _put_noted(space, grids, bases, changes, entry, tick, node, cell, state)
+                            _put_noted(space, grids, bases, changes, at, cell, state)
                 word += 1
 
 
@@ -422,9 +410,7 @@ def _observe_chunk(
     grids: Grids,
     bases: Bases,
     changes: Changes,
-    entry: int,
-    tick: int,
-    node: int,
+    at: Moment,
     eye: Eye,
     corner: GridCell,
 ) -> bool:
@@ -432,6 +418,7 @@ def _observe_chunk(
 
     `corner` is the first cell of the chunk. Cells of the margin are unknown in all nodes.
     """
+    node = at[2]
     parent = whole(grids.parent[node])
     chunk = chunk_in(place_at(space.chunks, space.sizes, corner))
     theirs, ny, nz = grids.rows[parent, chunk], space.sizes[1] - 2, space.sizes[2] - 2
@@ -446,7 +433,7 @@ def _observe_chunk(
             j, k = corner[1] + j, corner[2] + k
             if sees_cell(space, scene, eye, (i, j, k)):
                 cell = ((i - 1) * ny + j - 1) * nz + k - 1
-                _put_noted(space, grids, bases, changes, entry, tick, node, cell, state)
+                _put_noted(space, grids, bases, changes, at, cell, state)
             else:
                 left = True
     if not left:
@@ -456,27 +443,20 @@ def _observe_chunk(
 
 @inner
 def _observe_chunks(
-    space: Space,
-    grids: Grids,
-    bases: Bases,
-    changes: Changes,
-    entry: int,
-    tick: int,
-    node: int,
-    eye: Eye,
+    space: Space, grids: Grids, bases: Bases, changes: Changes, at: Moment, eye: Eye
 ) -> None:
     """Take over the pending blocks that the owner of a node sees, where grids are in chunks."""
-    (px, py, pz), _, _, far = eye
-    x0, x1 = _in_range(px, far, space.sizes[0])
-    y0, y1 = _in_range(py, far, space.sizes[1])
-    z0, z1 = _in_range(pz, far, space.sizes[2])
+    node, ((px, py, pz), _, _, far) = at[2], eye
+    x0, x1 = _in_range(px, far, 0, space.sizes[0])
+    y0, y1 = _in_range(py, far, 0, space.sizes[1])
+    z0, z1 = _in_range(pz, far, 0, space.sizes[2])
     for i in range(x0 // SIDE * SIDE, x1, SIDE):
         for j in range(y0 // SIDE * SIDE, y1, SIDE):
             for k in range(z0 // SIDE * SIDE, z1, SIDE):
                 chunk = chunk_in(place_at(space.chunks, space.sizes, (i, j, k)))
                 word, bit = chunk // _WORD, np.uint64(1) << np.uint64(chunk % _WORD)
                 if grids.pending[node, word] & bit and not _observe_chunk(
-                    space, grids, bases, changes, entry, tick, node, eye, (i, j, k)
+                    space, grids, bases, changes, at, eye, (i, j, k)
                 ):
                     grids.pending[node, word] &= ~bit
 
@@ -772,12 +752,13 @@ def fold(
                 if look == _ABSENT:
                     continue
                 eye, tick = eye_of(space, poses, whole(looks.eye[node])), whole(facts.tick[entry])
+                at = whole(entry), tick, whole(node)
                 _observe_agents(space, poses, looks, grids, node, eye, look == _MOVED)
                 if look == _MOVED or grids.fresh[node]:
                     if chunks is None:
-                        _observe_cells(space, grids, bases, changes, entry, tick, node, eye)
+                        _observe_cells(space, grids, bases, changes, at, eye)
                     else:
-                        _observe_chunks(space, grids, bases, changes, entry, tick, node, eye)
+                        _observe_chunks(space, grids, bases, changes, at, eye)
                     grids.fresh[node] = False
                 _perceive_events(space, poses, facts, looks, grids, changes, span, entry, node, eye)
                 _propagate_bases(space, grids, bases, node, eye, look == _MOVED)

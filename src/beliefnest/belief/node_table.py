@@ -387,11 +387,8 @@ class NodeTable:
 
     def change(self, node: int, blocks: Mapping[int, int]) -> None:
         """Set blocks of a node by cell, after `link`; their bases stay."""
-        from beliefnest.belief import kernel
-
         for cell, state in blocks.items():
-            self.reserve()
-            kernel.put(self.context.space, self.nodes(), node, cell, state)
+            self._put_all(np.array([node]), cell, np.array([state]))
 
     def put(self, node: int, cell: int, state: int, basis: Basis) -> None:
         """Set a block of a node by hand, with its basis."""
@@ -403,17 +400,21 @@ class NodeTable:
         self, which: npt.NDArray[np.int64], cell: int, states: Sequence[int], basis: Basis
     ) -> None:
         """Set a claimed block in several nodes: `states[k]` in node `which[k]`."""
-        from beliefnest.belief import kernel
-
-        wanted = np.array(states, dtype=np.int64)
-        if self.pool is None:
-            kernel.put_all(self.context.space, self.nodes(), which, cell, wanted)
-        for number in range(len(which)) if self.pool is not None else ():
-            self.reserve()
-            one = slice(number, number + 1)
-            kernel.put_all(self.context.space, self.nodes(), which[one], cell, wanted[one])
+        self._put_all(which, cell, np.array(states, dtype=np.int64))
         for node in which.tolist():
             self.set_basis(node, cell, basis)
+
+    def _put_all(
+        self, which: npt.NDArray[np.int64], cell: int, states: npt.NDArray[np.int64]
+    ) -> None:
+        """Set a block in several nodes; in chunks one by one, with room for each."""
+        from beliefnest.belief import kernel
+
+        step = 1 if self.pool is not None else max(len(which), 1)
+        for first in range(0, len(which), step):
+            self.reserve()
+            some = slice(first, first + step)
+            kernel.put_all(self.context.space, self.nodes(), which[some], cell, states[some])
 
     def levels(self) -> Iterator[npt.NDArray[np.bool_]]:
         """Yield for each depth a mask of the nodes at that depth, node 0 first."""
@@ -636,10 +637,6 @@ class NodeTable:
         from beliefnest.belief import seeing
 
         return seeing.sees_point(*self._look(node), point)
-
-    def block_is_current(self, node: int, cell: int) -> bool:
-        """Return True if a node's block is current (semantics, section 5.4)."""
-        return cell in self.current_blocks(node, (cell,))
 
     def current_blocks(self, node: int, cells: Iterable[int]) -> set[int]:
         """Return the cells whose block is current in a node (semantics, section 5.4).

@@ -3,10 +3,12 @@
 Coordinates and codes are those of `rays`, an `Eye` is that of `beams`.
 """
 
+import math
+
 import numpy as np
 
 from beliefnest.perception.beams import Beam, Eye, in_field, in_reach, sees_block
-from beliefnest.perception.codes import FULL, INTRUDED, OWN, Reaches
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN, Reaches
 from beliefnest.perception.compiling import inlined, inner, merged
 from beliefnest.perception.rays import (
     GridCell,
@@ -16,12 +18,18 @@ from beliefnest.perception.rays import (
     code_at,
     hidden_by,
     is_inside,
+    lower,
     neighbour,
+    turned,
+    turned_back,
+    upper,
 )
 from beliefnest.world.array_types import Codes
 from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
 
 _MARGIN = 1e-3
+_THINNEST = 1 / 32
+"""Least depth of what closes a layer: rays pass that are inside for less than 1e-9 blocks."""
 _HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)
 
 
@@ -58,6 +66,57 @@ def _is_enclosed(scene: RayScene, eye: Vector, cell: GridCell) -> bool:
         if not is_inside(scene.sizes, other) or code_at(scene, other) & OWN != FULL:
             return False
     return True
+
+
+@inner
+def _is_closed(scene: RayScene, axis: int, layer: int) -> bool:
+    """Return True if no ray gets through a layer of the box, from one side to the other.
+
+    So it is if all its blocks fill one and the same part of its depth.
+    """
+    _, size_b, size_c = turned(scene.sizes, axis)
+    boxes, low, high = scene.boxes, 0.0, 1.0
+    for b in range(1, size_b - 1):
+        for c in range(1, size_c - 1):
+            code = code_at(scene, turned_back(layer, b, c, axis)) & OWN
+            if code == EMPTY:
+                return False
+            if code != FULL:
+                row = scene.starts[code - FIRST_SHAPE]
+                a0, b0, c0 = turned((boxes[row, 0], boxes[row, 1], boxes[row, 2]), axis)
+                a1, b1, c1 = turned((boxes[row, 3], boxes[row, 4], boxes[row, 5]), axis)
+                low, high = upper(low, a0), lower(high, a1)
+                if upper(b0, c0) > 0.0 or lower(b1, c1) < 1.0 or high - low < _THINNEST:
+                    return False
+    return True
+
+
+@inner
+def _open_layers(scene: RayScene, eye: Vector, axis: int) -> tuple[int, int]:
+    """Return the first layer along an axis that no closed one hides, and one after the last."""
+    own, size = math.floor(turned(eye, axis)[0]), turned(scene.sizes, axis)[0]
+    first, end = own, own + 1
+    while first > 1 and (first == own or not _is_closed(scene, axis, first)):
+        first -= 1
+    while end < size - 1 and (end == own + 1 or not _is_closed(scene, axis, end - 1)):
+        end += 1
+    return first - 1, lower(end, size - 1) - 1
+
+
+@inner
+def open_room(scene: RayScene, eye: Vector) -> tuple[GridCell, GridCell]:
+    """Return the first cell of the part of the box that an eye may see into, and its end.
+
+    Behind a layer that is closed from one end of the box to the other nothing is seen. Cells are
+    counted from the corner of the box.
+    """
+    nx, ny, nz = scene.sizes
+    if not (1.0 <= eye[0] <= nx - 1.0 and 1.0 <= eye[1] <= ny - 1.0 and 1.0 <= eye[2] <= nz - 1.0):
+        return (0, 0, 0), (nx - 2, ny - 2, nz - 2)
+    x0, x1 = _open_layers(scene, eye, 0)
+    y0, y1 = _open_layers(scene, eye, 1)
+    z0, z1 = _open_layers(scene, eye, 2)
+    return (x0, y0, z0), (x1, y1, z1)
 
 
 @merged

@@ -152,7 +152,10 @@ class RunningPrograms:
 
     def time_out(self, timeout_ticks: int) -> None:
         """End those that go on, because their ticks are over."""
-        _time_out(self._runs, self._world.now, timeout_ticks)
+        for run in self._runs:
+            if run.end_tick is None:
+                run.end_tick = self._world.now
+                run.end = Fault(f"the program did not end within {timeout_ticks} ticks", "timeout")
 
     def leave(self) -> None:
         """Listen to the world no longer."""
@@ -340,13 +343,6 @@ def _point(value: Sequence[float]) -> Point:
 
 def _others(agents: Mapping[str, AgentState], me: str) -> Mapping[str, AgentState]:
     return {name: agent for name, agent in agents.items() if name != me}
-
-
-def _time_out(runs: Sequence[_Run], tick: int, timeout_ticks: int) -> None:
-    for run in runs:
-        if run.end_tick is None:
-            run.end_tick = tick
-            run.end = Fault(f"the program did not end within {timeout_ticks} ticks", "timeout")
 
 
 def _result(
