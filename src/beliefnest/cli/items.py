@@ -1,6 +1,7 @@
 """`beliefnest items`: the questions of a study as a set of benchmark items."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from rich.table import Table
@@ -11,7 +12,7 @@ from beliefnest.errors import InputError
 from beliefnest.studies.items.item_set import ItemSet, check_folder, read_description
 from beliefnest.studies.items.report import report_of
 from beliefnest.studies.study import Study
-from beliefnest.world.words import counted
+from beliefnest.world.words import counted, listed
 
 _MOST_DROPPED = 5
 
@@ -29,9 +30,16 @@ def run_items(options: ItemsOptions) -> int:
     set_options = _set_options(options)
     with progress_on(options.study.stem) as on_progress:
         made = Study.load(options.study).items(**set_options, on_item=on_progress)
-    differing = made.differences(options.out) if options.verify else []
-    if not options.verify:
+    differing: list[str] = []
+    if options.verify:
+        there = read_description(options.out)
+        differing = replace(made, made_with=there.made_with).differences(options.out)
+        if differing and there.made_with != made.made_with:
+            of_set, here = (_versions(each) for each in (there.made_with, made.made_with))
+            differing.append(f"made with {of_set}, and again with {here}: that may be the cause")
+    else:
         made.write(options.out)
+    unanswerable = sum(each.is_unanswerable for each in made.dropped)
     report = report_of(made.items) if options.report else {}
     summary = {
         "folder": str(options.out),
@@ -41,7 +49,11 @@ def run_items(options: ItemsOptions) -> int:
         **({"report": report} if report else {}),
     }
     print_report(summary, _parts(options, made, differing, report), as_json=options.json)
-    return int(bool(differing))
+    return int(bool(differing or unanswerable))
+
+
+def _versions(made_with: Mapping[str, str]) -> str:
+    return listed([f"{name} {version}" for name, version in made_with.items()])
 
 
 def _set_options(options: ItemsOptions) -> dict[str, Any]:
@@ -72,12 +84,20 @@ def _parts(
         yield f"dropped: {each.scenario}, probe {each.probe}: {each.why}"
     if len(made.dropped) > _MOST_DROPPED:
         yield f"and {len(made.dropped) - _MOST_DROPPED} more; all of them are in dropped.jsonl"
+    unanswerable = sum(each.is_unanswerable for each in made.dropped)
+    if unanswerable:
+        yield (
+            f"{counted(unanswerable, 'question')} of {len(made.dropped) + len(made.items)} dropped "
+            "for their options; mend these in the scenario"
+        )
     yield from differing
     size = ", ".join(f"{counted(len(each), part)}" for part, each in _sizes(made))
     if not options.verify:
         yield f"{options.out}: {size}"
     elif not differing:
-        yield f"{options.out}: {size}; made again with the same bytes"
+        public = read_description(options.out).public_only(options.out)
+        part = "; the held-out part is not there, and the rest" if public else ";"
+        yield f"{options.out}: {size}{part} made again with the same bytes"
 
 
 def _sizes(made: ItemSet) -> Iterator[tuple[str, tuple[object, ...]]]:

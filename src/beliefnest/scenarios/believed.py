@@ -1,5 +1,6 @@
 """Right answers that the nest computes: what a simulator believes about one thing."""
 
+import difflib
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -180,7 +181,7 @@ class Believed:
                 return alike[0]
         raise self._fault(
             f"the right answer is {quoted(belief.names[0])}, which is none of the options "
-            f"{', '.join(options)}; add it"
+            f"{', '.join(options)}; add it{_alike(belief.names, options)}"
         )
 
     def _found(self, state: State, naming: Naming) -> list[_Found]:
@@ -219,6 +220,11 @@ class Believed:
 
     def _fault(self, message: str) -> ScenarioError:
         return ScenarioError(f"{self.where}{message}")
+
+
+def _alike(names: Sequence[str], options: Sequence[str]) -> str:
+    close = [each for name in names for each in difflib.get_close_matches(name, options, 1, 0.8)]
+    return f", or mend {quoted(close[0])}" if close else ""
 
 
 def _located(state: State, naming: Naming, item: str) -> Iterator[_Found]:

@@ -52,7 +52,7 @@ class _Reader:
     def read(self, text: str) -> set[str]:
         """Return the places of the item in the belief after a whole story."""
         self.places = [set() for _ in range(len(self.path) + 1)]
-        for sentence in _sentences(text):
+        for sentence in story_sentences(text):
             match = re.fullmatch(r"(?:.* )?(heard it|knew that)", sentence)
             if match is None:
                 self._everybody_hears()
@@ -290,7 +290,7 @@ class _Watcher(_Reader):
         """
         self.seen = ["" for _ in range(len(self.path) + 1)]
         watching: set[int] = set()
-        for sentence in _sentences(text):
+        for sentence in story_sentences(text):
             if self.takes_up and re.search(r"\b(said|whispered to .*): “", sentence):
                 raise UnreadError(sentence)
             before = watching
@@ -347,7 +347,7 @@ class _Watcher(_Reader):
         self.glimpsed, self.fresh = set(), watching
 
 
-def _sentences(text: str) -> Iterator[str]:
+def story_sentences(text: str) -> Iterator[str]:
     """Yield the sentences of a story without their full stops."""
     return filter(None, (each.strip().removesuffix(".") for each in _SENTENCE.findall(text)))
 

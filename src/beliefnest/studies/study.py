@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
+from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -51,6 +52,7 @@ from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_keys import StudyKeys, design_of
 from beliefnest.studies.table import Table, variation_columns
+from beliefnest.version import VERSION
 from beliefnest.world.texts import quoted
 from beliefnest.worlds.minecraft.launching import ahead
 
@@ -247,7 +249,9 @@ class Study:
         if design.design == "latin-square":
             plan = with_balanced_lists(plan)
         if design.balance:
-            self._made = made_items(plan.cells, self._documents)
+            self._made = made_items(
+                plan.cells, self._documents, lambda _, done, total: on_variation(done, total)
+            )
             plan = with_balanced_items(plan, self._made, design.balance, design.seed)
         return _told_apart(plan, self._kind.table)
 
@@ -445,7 +449,8 @@ class Study:
         """
         if not is_amount(held_out) or held_out >= 1:
             raise InputError(f"held_out is {quoted(held_out)}; give a share of at least 0, below 1")
-        design, cells = self._scenarios()
+        say = on_item or _say_nothing_of_items
+        design, cells = self._scenarios(lambda done, total: say("playing", done, total))
         refuse_claims(design.setting)
         played = self._made or made_items(cells, self._documents, on_item)
         names = dict.fromkeys(map(item_name, cells))
@@ -457,11 +462,17 @@ class Study:
             held_out=held_out,
             version=version,
             changes=changes,
+            made_with={
+                "beliefnest": VERSION,
+                **({"scipy": version_of("scipy")} if design.balance else {}),
+            },
         )
 
-    def _scenarios(self) -> tuple[Design, Sequence[Cell]]:
+    def _scenarios(
+        self, on_variation: Callable[[int, int], None] = lambda done, total: None
+    ) -> tuple[Design, Sequence[Cell]]:
         """Return design and cells; raise InputError if the study plays episodes."""
-        design, plan = self._design, self.plan()
+        design, plan = self._design, self.plan(on_variation)
         if not isinstance(design, Design):
             raise InputError("questions are those of scenarios; this study plays episodes")
         cells = [cell for cell in plan.cells if isinstance(cell, Cell)]

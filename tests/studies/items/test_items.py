@@ -143,6 +143,27 @@ def test_shortcuts_answer_from_lower_beliefs_and_mentions(
     assert (found.shortcuts["first"], found.shortcuts["last"]) == ("left box", last)
 
 
+def test_shortcuts_answer_from_events(made):
+    """Sally has the bone out of the left box and into the right one, leaves, and misses a move."""
+    found = item(made, 1, "right", "Where does Anne").shortcuts
+    events = ("first_event", "last_event", "most_event", "first_leaving", "own_event", "outermost")
+    assert [found[each] for each in events] == [
+        *("left box", "left box", None),
+        *("right box", "right box", "left box"),
+    ]
+    assert "outermost" not in item(made, 1, "right", "Where will").shortcuts
+
+
+def test_words_are_events_if_they_are_about_what_is_asked_for(tmp_path):
+    say = "  - {agent: anne, program: \"await say(bot, 'WORDS')\"}\nprobes:"
+    for words, last in (("The bone is in the right box.", "right"), ("The right box!", "left")):
+        text = SCENARIO.replace("probes:", say.replace("WORDS", words), 1)
+        (tmp_path / "boxes.yaml").write_text(text, encoding="utf-8")
+        made = bn.Study([str(tmp_path / "boxes.yaml")], variations={"to": ["right"]}).items()
+        found = item(made, 1, "right", "Where will").shortcuts
+        assert found["last_event"] == f"{last} box"
+
+
 def test_answers_in_words_have_no_options_and_no_chance(made):
     found = item(made, 2, "left", "What is in")
     assert (found.options, found.chance, found.right) == ((), None, "bone")
@@ -211,6 +232,55 @@ def test_what_was_held_out_stays_so(folder, tmp_path, capsys, made):
 
 def copied(item: ItemRecord, seed: int) -> ItemRecord:
     return msgspec.structs.replace(item, seed=seed)
+
+
+def test_a_version_names_one_content(folder, made, tmp_path):
+    made.write(tmp_path / "set")
+    made.write(tmp_path / "set")
+    other = replace(made, items=made.items[1:])
+    with pytest.raises(InputError, match=r"holds version 1\.0\.0 with other items \(items\.jsonl"):
+        other.write(tmp_path / "set")
+    assert made.differences(tmp_path / "set") == []
+    replace(other, version="1.1.0").write(tmp_path / "set")
+
+
+def test_items_that_differ_in_names_stay_together(made):
+    """Were they not, each of the seeds would be in either part."""
+    copies = [copied(each, seed) for each in made.items for seed in range(20)]
+    alike = [msgspec.structs.replace(each, skeleton="s") for each in copies if each.seed < 5]
+    apart = [msgspec.structs.replace(each, skeleton=str(each.seed)) for each in copies]
+    parts = replace(made, items=tuple(apart), held_out=0.5).parts
+    assert {each.seed < 5 for each in parts["held-out"]} == {True, False}
+    assert {each.seed < 5 for each in parts["public"]} == {True, False}
+    mixed = (*alike, *(each for each in apart if each.seed >= 5))
+    parts = replace(made, items=mixed, held_out=0.5).parts
+    skeletons = [{each.skeleton for each in part} for part in parts.values()]
+    assert skeletons[0].isdisjoint(skeletons[1])
+
+
+def test_a_public_copy_is_verified_as_far_as_it_goes(folder, tmp_path, capsys):
+    command = ["items", str(folder / "study.yaml"), "-o", str(tmp_path / "set")]
+    assert run_command_line([*command, "--held-out", "0.5"]) == 0
+    (tmp_path / "set" / "held-out" / "items.jsonl").unlink()
+    assert run_command_line([*command, "--verify"]) == 1
+    assert "held-out/items.jsonl: is missing" in capsys.readouterr().out
+    (tmp_path / "set" / "held-out").rmdir()
+    assert run_command_line([*command, "--verify"]) == 0
+    assert "the held-out part is not there, and the rest made again" in capsys.readouterr().out
+    about = tmp_path / "set" / "set.json"
+    about.write_text(about.read_text().replace('"beliefnest": "', '"beliefnest": "9'), "utf-8")
+    assert run_command_line([*command, "--verify"]) == 1
+    assert "made with beliefnest 9" in capsys.readouterr().out
+
+
+def test_options_that_give_no_right_answer_end_with_an_error(tmp_path, capsys):
+    text = SCENARIO.replace("options: [left box, right box]", "options: [left box, rihgt box]", 1)
+    (tmp_path / "boxes.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "study.yaml").write_text("scenarios: [boxes.yaml]\n", encoding="utf-8")
+    assert run_command_line(["items", str(tmp_path / "study.yaml"), "-o", str(tmp_path / "s")]) == 1
+    out = " ".join(capsys.readouterr().out.split())
+    assert "none of the options left box, rihgt box; add it, or mend 'rihgt box'" in out
+    assert "1 question of 8 dropped for their options" in out
 
 
 @pytest.mark.parametrize(

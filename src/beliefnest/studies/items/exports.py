@@ -93,7 +93,7 @@ def card(described: Mapping[str, Any]) -> bytes:
         f"# {described['name']} {described['version']}",
         "",
         f"{parts['public']} questions about what agents believe, made by BeliefNest "
-        f"{described['beliefnest']}. Right answers are",
+        f"{described['made_with']['beliefnest']}. Right answers are",
         f"computed from what the agents could perceive.{held_out} {described['dropped']} questions "
         "were dropped, with the reasons",
         "in `dropped.jsonl`.",

@@ -2,8 +2,8 @@
 
 import json
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import zip_longest
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from beliefnest.version import VERSION
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted, listed
 
-FORM = "beliefnest items 1"
+FORM = "beliefnest items 2"
 """Mark of folders of this version."""
 _ITEMS = "items.jsonl"
 _SET = "set.json"
@@ -30,13 +30,23 @@ _MOST_LINES = 5
 
 
 class SetDescription(msgspec.Struct, frozen=True):
-    """Part of `set.json` from which a set is made again; attributes as those of `ItemSet`."""
+    """Part of `set.json` from which a set is made again; attributes as those of `ItemSet`.
+
+    Attributes:
+        items: Number of items of each part.
+    """
 
     format: str
     name: str
     version: str
     changes: str
     held_out: float
+    made_with: dict[str, str]
+    items: dict[str, int]
+
+    def public_only(self, folder: Path) -> bool:
+        """Return True if a folder is a public copy: without the part that is held out."""
+        return "held-out" in self.items and not (folder / "held-out").exists()
 
 
 def read_description(folder: Path) -> SetDescription:
@@ -84,6 +94,7 @@ class ItemSet:
             of the seed decides, so that a larger set publishes nothing that a smaller one held out.
         version: Version of the set.
         changes: What changed in this version.
+        made_with: Versions of the packages that decide about its content, by name.
 
     Raises:
         InputError: The name or version is no word, or all items would be in one part.
@@ -95,6 +106,7 @@ class ItemSet:
     held_out: float = 0.0
     version: str = "1.0.0"
     changes: str = ""
+    made_with: Mapping[str, str] = field(default_factory=lambda: {"beliefnest": VERSION})
 
     def __post_init__(self) -> None:
         for what, text in (("name", self.name), ("version", self.version)):
@@ -106,8 +118,8 @@ class ItemSet:
             kept = "none" if self.parts["public"] else "all"
             seeds = counted(len({each.seed for each in self.items}), "seed")
             raise InputError(
-                f"held_out {self.held_out:g} holds back {kept} of {seeds}; give another share, or "
-                "more variations"
+                f"held_out {self.held_out:g} holds back {kept} of {seeds}, where items that differ "
+                "in names only stay together; give another share, or more variations"
             )
 
     @property
@@ -119,13 +131,22 @@ class ItemSet:
     def parts(self) -> dict[str, tuple[ItemRecord, ...]]:
         """Return the public items and, if there are any, those that are held out.
 
-        All items of a seed are in the same part, so that no text of one is in the other.
+        All items of a seed are in the same part, so that no text of one is in the other; so are
+        all of a skeleton, so that no item that is held out is a public one with other names.
         """
-        hidden = {
+        skeletons: dict[int, set[str]] = {}
+        for each in self.items:
+            skeletons.setdefault(each.seed, set()).add(each.skeleton)
+        fresh = {
             seed
-            for seed in {each.seed for each in self.items}
+            for seed in skeletons
             if int(digest(["held out", seed])[:16], 16) < self.held_out * _WHOLE
         }
+        hidden: set[int] = set()
+        while fresh:
+            hidden |= fresh
+            shared = {skeleton for seed in fresh for skeleton in skeletons[seed]}
+            fresh = {seed for seed in skeletons.keys() - hidden if shared & skeletons[seed]}
         public = tuple(each for each in self.items if each.seed not in hidden)
         kept = tuple(each for each in self.items if each.seed in hidden)
         return {"public": public} | ({"held-out": kept} if kept and public else {})
@@ -146,7 +167,7 @@ class ItemSet:
             "held_out": self.held_out,
             "items": {part: len(items) for part, items in self.parts.items()},
             "dropped": len(self.dropped),
-            "beliefnest": VERSION,
+            "made_with": dict(self.made_with),
         }
         public = files[_ITEMS]
         return {
@@ -161,23 +182,35 @@ class ItemSet:
         """Write the set into a folder.
 
         Raises:
-            InputError: The folder holds something else, or a set with another held-out share.
+            InputError: The folder holds something else, a set with another held-out share, or
+                other items of the same version.
         """
-        place = Path(folder)
+        place, files = Path(folder), self.files()
         check_folder(place, self.held_out)
+        if (place / _SET).is_file() and read_description(place).version == self.version:
+            names = [name for name in files if name.endswith(_ITEMS) and (place / name).exists()]
+            for line in (line for name in names for line in _compared(place, name, files[name])):
+                raise InputError(
+                    f"{place} holds version {self.version} with other items ({line}); give a new "
+                    "--set-version and say its --changes, or name another folder"
+                )
         place.mkdir(parents=True, exist_ok=True)
         with holding(place):
-            for name, content in self.files().items():
+            for name, content in files.items():
                 (place / name).parent.mkdir(exist_ok=True)
                 replace_file(place / name, content)
 
     def differences(self, folder: str | Path) -> list[str]:
         """Return a line for each file of a folder that differs from this set, or is not of it.
 
+        Of a public copy, without the part that is held out, the rest is compared.
+
         Raises:
-            InputError: A file cannot be read.
+            InputError: The folder holds no set, or a file cannot be read.
         """
         place, files = Path(folder), self.files()
+        if read_description(place).public_only(place):
+            files = {name: files[name] for name in files if not name.startswith("held-out/")}
         differing = [line for name in files for line in _compared(place, name, files[name])]
         there = (each for each in sorted(place.rglob("*")) if each.is_file())
         names = (each.relative_to(place).as_posix() for each in there)

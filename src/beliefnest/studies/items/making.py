@@ -73,6 +73,7 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
     key, probe = item.cell.key, item.probe(question)
     place = question.asked.question
     name = probe.label or question.id
+    is_unanswerable = False
     try:
         probe = resolved(nest, probe)
         (asked,) = (each for each in probe.questions if each.question == place)
@@ -81,7 +82,7 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
         if asked.options and len(asked.right) > 1:
             fault = f"several options are right: {listed([repr(each) for each in asked.right])}"
     except ScenarioError as error:
-        fault = str(error)
+        fault, is_unanswerable = str(error), True
     if fault:
         return DroppedQuestion(
             scenario=key.scenario,
@@ -90,6 +91,7 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
             probe=name,
             question=place,
             why=fault,
+            is_unanswerable=is_unanswerable,
         )
     naming, believed = naming_for(nest, probe), asked.believed
     path = probe.path if believed is None else believed.path

@@ -35,7 +35,10 @@ class ItemRecord(msgspec.Struct, frozen=True, kw_only=True):
             is beyond it.
         shortcuts: Answers of rules that need no belief, or one of a lower order: an option, or None
             if the rule gives none. `reality`, `order_0` and so on, `lower_order` (the order below),
-            `first`, `last` and `most` (mentioned options).
+            `outermost` (the first agent's own belief), `first`, `last` and `most` (mentioned
+            options), and the options of events: the `first_event`, the last, that of most, the
+            last before the first and last loss of sight (`first_leaving`, `last_leaving`), and
+            the last that the last agent took part in (`own_event`).
     """
 
     id: str
@@ -72,6 +75,7 @@ class DroppedQuestion(msgspec.Struct, frozen=True, kw_only=True):
         probe: Name of the probe, or its number.
         question: The question.
         why: Reason.
+        is_unanswerable: True if its options do not give the right answer, or cannot be told apart.
     """
 
     scenario: str
@@ -80,3 +84,4 @@ class DroppedQuestion(msgspec.Struct, frozen=True, kw_only=True):
     probe: str
     question: str
     why: str
+    is_unanswerable: bool

@@ -29,8 +29,15 @@ def _noted(name: str) -> Solver:
     return lambda each: each.shortcuts.get(name)
 
 
+OF_BELIEFS = (
+    *("reality", "lower_order", "outermost"),
+    *("first_event", "last_event", "most_event", "first_leaving", "last_leaving", "own_event"),
+)
+"""Shortcuts that answer questions about beliefs only: reality and events answer those of order 0
+rightly."""
+
 FIXED_SOLVERS: Mapping[str, Solver] = {
-    **{name: _noted(name) for name in ("reality", "lower_order", "first", "last", "most")},
+    **{name: _noted(name) for name in (*OF_BELIEFS, "first", "last", "most")},
     "first_option": lambda each: each.options[0],
     "last_option": lambda each: each.options[-1],
     "longest_option": lambda each: _only(each.options, len),
@@ -40,9 +47,6 @@ FIXED_SOLVERS: Mapping[str, Solver] = {
 
 LEARNED = ("majority", "words")
 """Shortcuts that learn from the other items of a set, so that no choice of items balances them."""
-
-OF_BELIEFS = ("reality", "lower_order")
-"""Shortcuts that answer questions about beliefs only: reality answers those of order 0 rightly."""
 
 
 def report_of(items: Sequence[ItemRecord]) -> dict[str, Any]:
