@@ -1,15 +1,16 @@
-"""`beliefnest items --functional`: certificates of episodes that need an order of beliefs."""
+"""`beliefnest items --functional`: certificates of episodes, and questions beside them."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from rich.table import Table
 
-from beliefnest.cli.console import print_report, result_table
+from beliefnest.cli.console import Printed, print_report, result_table
 from beliefnest.cli.options import ItemsOptions
 from beliefnest.cli.playing import playing
 from beliefnest.errors import InputError
-from beliefnest.files import replace_file
+from beliefnest.files import replace_file, replacing
 from beliefnest.studies.items.functional.certifying import (
     Certificate,
     certified,
@@ -17,7 +18,11 @@ from beliefnest.studies.items.functional.certifying import (
     check_functional,
     families_of,
 )
+from beliefnest.studies.items.functional.pairing import by_order, paired, plot_pairs
 from beliefnest.studies.study import Study
+
+_RATES = {"rate": "", "pass_at_k": "pass@k", "pass_hat_k": "pass^k"}
+"""Headings of rates: of all repeats, of instances with any right, of those with all right."""
 
 
 def run_functional(options: ItemsOptions) -> int:
@@ -35,21 +40,31 @@ def run_functional(options: ItemsOptions) -> int:
                 f"--{option.replace('_', '-')} is for sets of items; leave out --functional"
             )
     design = check_functional(Study.load(options.study).design, str(options.study))
-    with playing(options.study.stem, options.out) as (folder, on_progress):
-        done = [
-            certified(each, design.seeds, folder / each.folder, options.jobs, on_progress)
-            for each in families_of(design)
+    families, seeds, jobs = list(families_of(design)), design.seeds, options.jobs
+    model, repeats = options.model, design.repeats
+    with playing(options.study.stem, options.out) as (folder, say):
+        done = [certified(each, seeds, folder / each.folder, jobs, say) for each in families]
+        pairs = [
+            paired(each, model, seeds, repeats, folder / each.folder / "model", jobs, say)
+            for each in (families if model else ())
         ]
-    content = {"certificates": [each.plain() for each in done]}
-    replace_file(options.out / "certificates.json", json.dumps(content, indent=2) + "\n")
+    content: dict[str, Any] = {"certificates": [each.plain() for each in done]}
+    report: list[Printed] = [_certificates(done)]
+    if pairs:
+        rows = [each.plain() for each in (*pairs, *by_order(pairs))]
+        content |= {"model": model, "pairs": rows}
+        report.append(_pairs(rows))
+        with replacing(options.out / "functional.png") as out:
+            plot_pairs(pairs, done).savefig(out, format="png", dpi=150)
+    replace_file(options.out / "functional.json", json.dumps(content, indent=2) + "\n")
     faults = [
         f"{each.family}, order {each.order}: {fault}" for each in done for fault in each.faults
     ]
-    print_report(content, [_table(done), *faults], as_json=options.json)
+    print_report(content, [*report, *faults], as_json=options.json)
     return int(bool(faults))
 
 
-def _table(done: Sequence[Certificate]) -> Table:
+def _certificates(done: Sequence[Certificate]) -> Table:
     table = result_table(
         "family", "order", "search", "one order less", "bound", "chance rule", "best rule", "ok"
     )
@@ -64,6 +79,18 @@ def _table(done: Sequence[Certificate]) -> Table:
             "" if best is None else _rate(chance_of(each.rules)),
             "" if best is None else f"{best[0].removeprefix('rule:')} {_rate(best[1])}",
             "NO" if each.faults else "yes",
+        )
+    return table
+
+
+def _pairs(rows: Sequence[Mapping[str, Any]]) -> Table:
+    kinds = [f"{kind} {of}" for kind in ("literal", "functional") for of in _RATES.values()]
+    table = result_table("family", "order", *kinds, "difference", "p")
+    for row in rows:
+        rates = [f"{row[kind][of]:.0%}" for kind in ("literal", "functional") for of in _RATES]
+        name = row["family"] or "all"
+        table.add_row(
+            name, str(row["order"]), *rates, f"{row['difference']:+.0%}", f"{row['p']:.3f}"
         )
     return table
 

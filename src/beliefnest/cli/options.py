@@ -399,6 +399,9 @@ class ItemsOptions:
     functional: Annotated[
         bool, typer.Option("--functional", help="Certify which order the episodes of tasks need.")
     ] = False
+    model: Annotated[
+        str | None, typer.Option(help="Model to ask and to let play, with --functional.")
+    ] = None
     jobs: Annotated[int, typer.Option(min=1, help="Processes, with --functional.")] = 2
     json: Json = False
 

@@ -1,42 +1,36 @@
 """Functional items: what order their episodes need, and how families are refused."""
 
+import json
 from pathlib import Path
 
 import pytest
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.task import Task
-from beliefnest.studies.items.functional.certifying import Certificate, TaskFamily, best_course
+from beliefnest.studies.items.functional.certifying import Certificate, TaskFamily
+from beliefnest.studies.items.functional.pairing import LiteralFunctionalPair, by_order
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "functional"
 
 
-def family(name: str, condition: int | None = 1) -> TaskFamily:
-    document = Task.scenario_document(str(EXAMPLES / f"{name}.yaml"))
+def tell(tmp_path: Path, start: str) -> TaskFamily:
+    """Return the family `tell` with one thing drawn, and a place where Eva goes in the end."""
+    text = (EXAMPLES / "tell.yaml").read_text(encoding="utf-8")
+    text = text.replace("instances: {missed: {}, boxes: {}, things: {}}", "instances: {missed: {}}")
+    walk = f'  - {{agent: eva, program: "await goToPosition(bot, new Vec3({start}), 0);"}}\n'
+    text = text.replace("episode:\n", f"{walk}episode:\n")
+    (tmp_path / "tell.yaml").write_text(text, encoding="utf-8")
+    document = Task.scenario_document(str(tmp_path / "tell.yaml"))
     assert document is not None
-    return TaskFamily(name, document, condition)
+    return TaskFamily("tell", document, 1)
 
 
-def test_what_is_missed_looks_the_same_without_beliefs_about_others():
-    assert family("tell").hidden(0, 1) == "missed"
-
-
-@pytest.mark.long
-def test_what_looks_the_same_is_won_by_different_courses():
-    siblings = family("tell").siblings(0, "missed")
-    assert len(siblings) == 3
-    assert best_course(siblings, 1) == 1
+def test_what_she_missed_looks_the_same_without_beliefs_about_her(tmp_path):
+    assert tell(tmp_path, "3, 1, 3").hidden(0, 1) == "missed"
 
 
 def test_a_family_that_shows_its_answer_is_refused(tmp_path):
-    text = (EXAMPLES / "tell.yaml").read_text(encoding="utf-8")
-    # What Ann missed decides about what lies in the tray.
-    planted = text.replace("values: [0, 1, 2]}", "values: [0]}")
-    assert planted != text
-    (tmp_path / "planted.yaml").write_text(planted, encoding="utf-8")
-    document = Task.scenario_document(str(tmp_path / "planted.yaml"))
-    assert document is not None
-    assert TaskFamily("planted", document, 1).hidden(0, 1) == ""
+    assert tell(tmp_path, "${3 + 2 * missed}, 1, 3").hidden(0, 1) == ""
     (fault,) = Certificate("planted", 1, 1, (3, 3)).faults
     assert fault == "every parameter that is drawn shows in beliefs of order 0"
 
@@ -54,6 +48,45 @@ def test_each_fault_of_a_family_is_named(values, fault):
     sound = {"solved": (20, 20), "lower": (0, 20), "bound": 1 / 3, "rules": {"rule:any": (9, 21)}}
     assert Certificate("tell", 2, 2, **sound, hidden="missed").faults == []
     assert Certificate("tell", 2, 2, **{**sound, **values}, hidden="missed").faults == [fault]
+
+
+def test_a_question_is_compared_with_the_episode_of_the_same_instance():
+    literal = {1: [True, True], 2: [True, True], 3: [True, False]}
+    acted = {1: [True, False], 2: [False, False], 3: [True, False]}
+    row = LiteralFunctionalPair("tell", 1, literal, acted).plain()
+    assert (row["instances"], row["repeats"]) == (3, 2)
+    rates = ("rate", "pass_at_k", "pass_hat_k")
+    assert [row["literal"][name] for name in rates] == [5 / 6, 1.0, 2 / 3]
+    assert [row["functional"][name] for name in rates] == [2 / 6, 2 / 3, 0.0]
+    # Of the 4 permutations of 2 instances that differ, 2 lie as far from zero.
+    assert (row["difference"], row["p"]) == (0.5, 0.5)
+
+
+def test_families_are_put_together_by_order():
+    one = LiteralFunctionalPair("tell", 1, {1: [True]}, {1: [False]})
+    other = LiteralFunctionalPair("warn", 1, {1: [False]}, {1: [False]})
+    last = LiteralFunctionalPair("warn", 2, {1: [True]}, {1: [True]})
+    first, second = by_order([last, one, other])
+    assert (first.family, first.order, second.order) == ("", 1, 2)
+    assert list(first.literal.values()) == [[True], [False]]
+
+
+@pytest.mark.extra("matplotlib")
+def test_a_model_answers_and_plays_and_a_figure_is_drawn(tmp_path, capsys):
+    (tmp_path / "small.yaml").write_text(
+        f"tasks: [{EXAMPLES / 'tell.yaml'}]\npolicies: [search]\norders: [0]\n"
+        "conditions: [0]\nseeds: 1\n",
+        encoding="utf-8",
+    )
+    command = ["items", str(tmp_path / "small.yaml"), "-o", str(tmp_path / "out"), "--jobs", "1"]
+    assert run_command_line([*command, "--functional", "--model", "first-option", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    (certificate,) = told["certificates"]
+    assert certificate["certified"]
+    assert (certificate["hidden"], certificate["bound"]) == ("missed", 1 / 3)
+    assert [each["family"] for each in told["pairs"]] == ["tell", ""]
+    assert (tmp_path / "out" / "functional.png").exists()
+    assert json.loads((tmp_path / "out" / "functional.json").read_text("utf-8")) == told
 
 
 @pytest.mark.parametrize("option", ["--report", "--verify"])

@@ -31,8 +31,10 @@ from beliefnest.studies.episode_design import EpisodeDesign
 from beliefnest.studies.study import Study
 from beliefnest.world.texts import quoted
 
-_EXACT = 3
+_EXACT = 2
 """Greatest number of groups of siblings in which all courses are tried."""
+_MOST = 0.5
+"""Greatest rate at which one course may win among instances that look the same."""
 _TRAINED, _TRAINING = 10_000, 3
 """First instance on which linear rules are tried, apart from those that are judged; how many."""
 
@@ -50,11 +52,13 @@ class Certificate:
         order: Order that the task states.
         solved: Episodes that `search` of the order won.
         lower: Episodes that `search` of one order less won; None: the order is 0.
-        hidden: Parameter whose values look the same to one order less; empty: the order is 0.
+        hidden: Parameter whose values look the same to one order less; empty: there is none. An
+            agent of less than order 0 sees nothing.
         siblings: Number of these values.
         groups: Number of groups of siblings in which all courses were tried.
-        bound: Greatest rate at which one course for all siblings of a group wins; None: order 0.
-        rules: Episodes that each rule without beliefs won, on whole groups of siblings.
+        bound: Greatest rate at which one course for all siblings of a group wins; None: none tried.
+        rules: Episodes that each rule without beliefs about others won, on whole groups of
+            siblings; at order 0, where rules may win, none is played.
     """
 
     family: str
@@ -75,15 +79,13 @@ class Certificate:
         won, played = self.solved
         if won < played:
             faults.append(f"search:{self.order} wins {won} of {played}")
-        if self.bound is None or self.lower is None:
-            if self.order:
-                less = self.order - 1
-                faults.append(f"every parameter that is drawn shows in beliefs of order {less}")
-            return faults
-        if self.bound > 0.5:
+        if self.bound is None:
+            less = self.order - 1
+            return [*faults, f"every parameter that is drawn shows in beliefs of order {less}"]
+        if self.bound > _MOST:
             faults.append(f"one course wins {self.bound:.0%} of the instances that look the same")
-        tried = {f"search:{self.order - 1}": self.lower, **self.rules}
-        for name, (won, played) in tried.items():
+        lower = {} if self.lower is None else {f"search:{self.order - 1}": self.lower}
+        for name, (won, played) in {**lower, **self.rules}.items():
             if wilson_interval(won, played)[0] > self.bound:
                 faults.append(f"{name} wins {won} of {played}, above {self.bound:.0%}")
         return faults
@@ -186,19 +188,21 @@ def certified(
     names = [f"search:{each}" for each in range(max(0, order - 1), order + 1)]
     won = play(names, seeds, folder / "search")
     certificate = partial(Certificate, first.name, family.condition, order, won[names[-1]])
-    hidden = family.hidden(seeds[0], order) if order else ""
+    hidden = family.hidden(seeds[0], order)
     if not hidden:
         return certificate()
     values = family.choices(hidden)
     count = len(values)
     groups = seeds[: -(-len(seeds) // count)]
-    trained = trained_rule(family.instance, range(_TRAINED, _TRAINED + _TRAINING))
-    rules = list(dict.fromkeys((*rules_of(first), trained)))
-    wins = play(rules, groups, folder / "rules", {hidden: values})
+    wins: Mapping[str, Tally] = {}
+    if order:
+        trained = trained_rule(family.instance, range(_TRAINED, _TRAINED + _TRAINING))
+        rules = list(dict.fromkeys((*rules_of(first), trained)))
+        wins = play(rules, groups, folder / "rules", {hidden: values})
     exact = groups[:_EXACT]
     best = [best_course(family.siblings(seed, hidden), order) for seed in exact]
     return certificate(
-        lower=won[names[0]],
+        lower=won[names[0]] if order else None,
         hidden=hidden,
         siblings=count,
         groups=len(exact),
