@@ -66,11 +66,11 @@ from beliefnest.perception.rays import GridCell, RayScene, lower, upper
 from beliefnest.world.event_kinds import Sense
 from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
 
-Moment = tuple[int, int, int]
-"""Number of an entry, its tick, and the node that is updated."""
-
 _WORD = 64
 _ABSENT, _STILL, _MOVED = 0, 1, 2
+_At = tuple[int, int, int]
+"""Number of an entry, its tick, and the node that is updated."""
+
 _perceives = inlined(perceives)
 _is_common = inlined(is_common)
 
@@ -193,7 +193,7 @@ def _settle(looks: Looks, bases: Bases, node: int, last: int) -> None:
 
 @inner
 def _put_noted(
-    space: Space, grids: Grids, bases: Bases, changes: Changes, at: Moment, cell: int, state: int
+    space: Space, grids: Grids, bases: Bases, changes: Changes, at: _At, cell: int, state: int
 ) -> None:
     """Call `_put`. Add a row to `changes` if the old or the new block shows a container.
 
@@ -357,7 +357,7 @@ def _in_range(place: float, far: float, first: int, end: int) -> tuple[int, int]
 
 @merged
 def _observe_cells(
-    space: Space, grids: Grids, bases: Bases, changes: Changes, at: Moment, eye: Eye
+    space: Space, grids: Grids, bases: Bases, changes: Changes, at: _At, eye: Eye
 ) -> None:
     """Take over the pending blocks that the owner of a node sees, where grids are dense.
 
@@ -410,7 +410,7 @@ def _observe_chunk(
     grids: Grids,
     bases: Bases,
     changes: Changes,
-    at: Moment,
+    at: _At,
     eye: Eye,
     corner: GridCell,
 ) -> bool:
@@ -443,7 +443,7 @@ def _observe_chunk(
 
 @inner
 def _observe_chunks(
-    space: Space, grids: Grids, bases: Bases, changes: Changes, at: Moment, eye: Eye
+    space: Space, grids: Grids, bases: Bases, changes: Changes, at: _At, eye: Eye
 ) -> None:
     """Take over the pending blocks that the owner of a node sees, where grids are in chunks."""
     node, ((px, py, pz), _, _, far) = at[2], eye

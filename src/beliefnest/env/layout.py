@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from beliefnest.env.bounds import Phrases, ThingsLayout
-from beliefnest.env.order import placed_states
+from beliefnest.env.order import placed_in
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.registry import Registry
 
@@ -31,7 +31,7 @@ def layout_of(setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> 
     contents = [agent.inventory for agent in snapshot.agents.values()]
     contents += list(snapshot.containers.values())
     worn = {name for agent in snapshot.agents.values() for name in agent.equipment.values()}
-    placed = {k: tuple(snapshot.places(states)) for k, states in placed_states().items()}
+    placed = {k: tuple(at) for k, at in placed_in(snapshot.box, snapshot.blocks).items()}
     return ThingsLayout(
         agents=agents,
         items=tuple(sorted({*items, *worn, *(name for each in contents for name in each)})),

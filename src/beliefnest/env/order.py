@@ -4,7 +4,7 @@ An order holds what one simulator believes and nothing else. It cannot reach the
 number in observations and actions depends on anything that the agent has not perceived.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
@@ -18,7 +18,7 @@ from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import Position
+from beliefnest.world.values import Box, Position
 
 PLACED = ("containers", "doors", "levers", "buttons", "signs")
 """Kinds of things that are blocks."""
@@ -78,20 +78,23 @@ def moved_state(state: int) -> int:
     return -1 if value is None else int(value == "true")
 
 
+def placed_in(box: Box, blocks: Terrain) -> Mapping[str, Sequence[Position]]:
+    """Return by kind the positions of things that are blocks, in order."""
+    x, y, z = box.low
+    places: dict[str, list[Position]] = {kind: [] for kind in PLACED}
+    for first, states in blocks.slabs():
+        classes = block_classes()[states]
+        for i, j, k in np.argwhere(classes >= BLOCK_CLASSES.index(PLACED[0])).tolist():
+            # Leave upper halves of doors out: they move together with the lower ones.
+            if not _is_upper_half(int(states[i, j, k])):
+                kind = BLOCK_CLASSES[classes[i, j, k]]
+                places[kind].append((x + first + i, y + j, z + k))
+    return places
+
+
 @cache
-def placed_states() -> Mapping[str, tuple[int, ...]]:
-    """Return by kind the block states of things that are blocks."""
-    registry = Registry.load()
-    kinds: dict[str, list[int]] = {kind: [] for kind in PLACED}
-    for name in registry.block_names:
-        kind = _kind_of(registry, name)
-        if kind is not None:
-            kinds[kind] += registry.state_ids(name)
-    # Leave upper halves of doors out: they move together with the lower ones.
-    kinds["doors"] = [
-        state for state in kinds["doors"] if registry.properties(state).get("half") != "upper"
-    ]
-    return {kind: tuple(states) for kind, states in kinds.items()}
+def _is_upper_half(state: int) -> bool:
+    return Registry.load().properties(state).get("half") == "upper"
 
 
 def _kind_of(registry: Registry, name: str) -> str | None:
@@ -154,12 +157,9 @@ class KnownOrder:
         self._add("agents", _agents_in(state, said))
         self._add("items", _items_in(state))
         self._add("containers", state.containers)
-        self._add("signs", state.signs)
         if before is None or not _is_same(before, terrain):
-            x, y, z = state.box.low
-            for kind, states in placed_states().items():
-                cells = terrain.find(states).tolist()
-                self._add(kind, [(x + i, y + j, z + k) for i, j, k in cells])
+            for kind, places in placed_in(state.box, terrain).items():
+                self._add(kind, places)
 
     def _add(self, kind: str, things: Iterable[Any]) -> None:
         numbers = self._known[kind]

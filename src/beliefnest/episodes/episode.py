@@ -243,7 +243,7 @@ class Episode:
         """Ticks at which the played rounds began."""
         if self._people:
             return [part.began for part in self._parts if part.began is not None]
-        return range(self._start, self.nest.tick, self._brief.whole_round)
+        return range(self._start, self.nest.tick, Brief.of(self.task, self.seed).whole_round)
 
     @property
     def ticks(self) -> int:
@@ -448,7 +448,8 @@ class Episode:
         """Return a branch of the episode, see `RoundStart.fork`."""
         nest = self.nest
         beginnings = [*self.beginnings, nest.tick]
-        tick = beginnings[round] if self._people else self._start + round * self._brief.whole_round
+        whole = Brief.of(self.task, self.seed).whole_round
+        tick = beginnings[round] if self._people else self._start + round * whole
         taken = {info.key.branch for info in nest["/"].branches()}
         number = next(n for n in range(1, len(taken) + 2) if f"fork {n}" not in taken)
         chosen: dict[str, str | Policy] = {**self._policies, **policies}
@@ -473,10 +474,6 @@ class Episode:
     @property
     def _slots(self) -> tuple[tuple[str, ...], ...]:
         return slots_of(self.task.agents, turns=self.task.form.play == "turns")
-
-    @property
-    def _brief(self) -> Brief:
-        return Brief.of(self.task, self.seed)
 
     def _opened(self) -> Nest:
         if self._nest is None:

@@ -36,6 +36,7 @@ class Watch:
             for name, goal in goals.items()
         }
         named = {path for goal in goals.values() for path in goal.paths}
+        self._limits_messages = any(goal.messages is not None for goal in goals.values())
         self._paths = sorted({"/", *map(path_text, named)})
 
     def up_to_now(self, nest: Nest) -> Mapping[str, Progress]:
@@ -46,6 +47,7 @@ class Watch:
                 self._seen = self._start
             for tick, states in nest.each_tick(self._paths, self._seen, nest.tick, self._walk):
                 self._feed(tick, states)
+                del states  # what somebody holds is read before the next tick
             self._seen = nest.tick
         return self.progress
 
@@ -55,9 +57,9 @@ class Watch:
             view = states[path]
             views[tuple(name for name in path.split("/") if name)] = getattr(view, "state", view)
         look = looking_at(views)
-        said = 0 if tick == self._start else self._said_at(tick, views[()])
+        said = 0
+        if tick != self._start and self._limits_messages:
+            chat = views[()].chat
+            said = sum(1 for when, who, _ in chat if when == tick and who in self._players)
         for each in self._distinct:
             each.feed(tick, look, said)
-
-    def _said_at(self, tick: int, reality: State) -> int:
-        return sum(1 for when, who, _ in reality.chat if when == tick and who in self._players)

@@ -71,7 +71,7 @@ class Progress:
         first: Tick at which each condition first came true, by number of the condition.
         reached: Tick at which the goal was reached; None: not yet.
         violated: Tick at which the goal was violated; None: it was not.
-        messages: Number of utterances of players so far.
+        messages: Number of utterances of players so far; not counted if the goal does not limit it.
     """
 
     goal: Goal
@@ -92,7 +92,7 @@ class Progress:
         Args:
             tick: The tick.
             look: States at the tick.
-            messages: Number of utterances of players in the tick.
+            messages: Number of utterances of players in the tick, if the goal limits it.
         """
         if self.reached is not None:
             return

@@ -318,6 +318,7 @@ class Nest(NestBase):
             wanted = list(dict.fromkeys(parsed.values()))
             for tick, states in each_tick(self._recording, wanted, after, until, walk):
                 yield tick, {path: states[names] for path, names in parsed.items()}
+                del states  # what somebody holds is read before the next tick
 
     def play(self, on_progress: OnProgress | None = None) -> None:
         """Play the scenario's script in the real world, from the first step that was not played.

@@ -152,10 +152,6 @@ class StateHistory:
             position = self._journal.info(key).entries
         return TimelineState(self.shared(key, path, position), path, tick, key, self)
 
-    def view(self, forest: Forest, path: BeliefPath, key: TimelineKey) -> TimelineState:
-        """Return the state of a node of a forest of a timeline."""
-        return TimelineState(forest, path, None, key, self)
-
     def shared(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
         """Return a forest with a node, after some entries of a timeline.
 

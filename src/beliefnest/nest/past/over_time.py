@@ -8,6 +8,7 @@ from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import BeliefPath, path_text
@@ -123,7 +124,8 @@ def each_tick(
             recording.history.advance(key, forest, position)
             if not after < forest.tick <= until:
                 continue
-            yield forest.tick, {path: recording.history.view(forest, path, key) for path in paths}
+            source = recording.history
+            yield forest.tick, {p: TimelineState(forest, p, None, key, source) for p in paths}
 
 
 def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:
