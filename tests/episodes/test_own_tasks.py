@@ -178,7 +178,7 @@ def test_classes_and_functions_play_by_their_names(
         ("own.py:Absent", "no policy 'Absent'; it defines Greeter, shouter, Mute, Needy"),
         ("own.py:Greter", "own.py has no policy 'Greter'; did you mean 'Greeter'?"),
         ("needs.py:Greeter", "'other_file' (to import modules beside it, put its folder into"),
-        ("serch:1", "there is no policy 'serch:1'; write search:ORDER"),
+        ("serch:1", "there is no policy 'serch:1'; did you mean search:1?"),
         ("absent.py:Greeter", "there is no file absent.py"),
         ("absent_module:Greeter", "there is no module 'absent_module' for a policy; put its"),
         ("own.py:Mute", "Mute has no method act"),

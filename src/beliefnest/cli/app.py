@@ -170,7 +170,8 @@ def _fail(message: str, status: int) -> int:
     line = printable(" ".join(message.split()))
     if len(line) > _LONGEST_MESSAGE:
         # What to do stands at the end.
-        line = f"{line[: _LONGEST_MESSAGE - _END - 5]} ... {line[-_END:]}"
+        begin = line[: _LONGEST_MESSAGE - _END - 5].rpartition(" ")[0]
+        line = f"{begin} ... {line[-_END:].partition(' ')[2]}"
     print(f"beliefnest: {line}", file=sys.stderr)  # noqa: T201
     return status
 

@@ -39,6 +39,8 @@ def run_stats(options: StatsOptions) -> int:
     report: dict[str, Any] = {"summary": result.counted(result.checked(by or result.groups))}
     if options.between:
         report["differences"] = {name: result.compared(name, by) for name in options.between}
+    if result.plan.get("unread"):
+        report["unread"] = result.plan["unread"]
     fits = _fits(result, options)
     if options.by and fits:
         report["regressions"] = fits
@@ -49,6 +51,9 @@ def run_stats(options: StatsOptions) -> int:
     if options.figure is not None:
         _draw(result, options.figure, by)
     parts = [*_parts(report, options.by or list(result.groups))]
+    if "unread" in report:
+        count = counted(report["unread"], "question")
+        parts.append(f"{count} of the data could not be read, and are not counted")
     if options.figure is not None:
         parts.append(f"figure: {options.figure}")
     print_report(report, parts, as_json=options.json)

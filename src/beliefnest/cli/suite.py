@@ -49,6 +49,9 @@ def run_suite(options: SuiteOptions) -> int:
     if not stories:
         read_stories.whole()
         raise InputError(f"{options.path} holds no rows; there is nothing to ask")
+    if not any(each.items for each in stories):
+        read_stories.whole()
+        raise InputError(f"{options.path} asks no question; give each story some `questions`")
     started = time.perf_counter()
     setting = {
         "world": options.world,
@@ -60,7 +63,12 @@ def run_suite(options: SuiteOptions) -> int:
             folder,
             STORY_KIND,
             story_cells(options.name, stories, setting),
-            {"suites": [options.name], "data": str(options.path), **setting},
+            {
+                "suites": [options.name],
+                "data": str(options.path),
+                "unread": sum(each.questions for each in read_stories.unread),
+                **setting,
+            },
             filter(None, [options.claims_from]),
             on_progress,
         )
@@ -175,7 +183,7 @@ def _parts(
     not_read: Sequence[Unread],
     judged: Sequence[JudgedAnswer],
 ) -> Iterator[Printed]:
-    title = f"{options.name}: {len(stories)} stories in the {options.world} world"
+    title = f"{options.name}: {counted(len(stories), 'story')} in the {options.world} world"
     numbers = ("order", "questions", "right", "first believer matters", "right")
     table = result_table("claims", *numbers, title=title, right=numbers)
     for tells, word in ((False, "none"), (True, "some")):

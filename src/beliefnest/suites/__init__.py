@@ -4,6 +4,7 @@ from typing import Any
 
 from beliefnest.errors import UnknownNameError
 from beliefnest.importing import installed, installed_names, load
+from beliefnest.world.words import nearest_or_all
 
 __all__ = ["FILMS", "story_reader", "suite_names"]
 
@@ -29,5 +30,5 @@ def story_reader(name: str) -> Any:
     """
     entry = installed(_GROUP, name)
     if entry is None:
-        raise UnknownNameError(f"no suite {name!r}; there are {', '.join(suite_names())}")
+        raise UnknownNameError(f"no suite {name!r}{nearest_or_all(name, suite_names())}")
     return load(entry, "suite")

@@ -8,6 +8,7 @@ from typing import Any, Generic, TypeVar, get_args
 
 import msgspec
 
+from beliefnest.errors import InputError
 from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.resolve import open_model
 from beliefnest.locking import holding
@@ -152,13 +153,21 @@ def play_suite(
         on_progress: Function that receives the progress.
 
     Raises:
-        InputError: The folder holds something else, or another process plays in it.
+        InputError: The folder holds something else or a suite of other data, or another process
+            plays in it.
         ModelError: A model does not exist, or its key is missing.
     """
     place = StudyFolder.open(folder, kind)
     planned = [cell.plain() for cell in cells]
     plan = {**about, "cells": planned, "invalid": [], "versions": own_versions()}
     place.check_subjects(plan)
+    before = place.plan() if place.has_plan else plan
+    played, wanted = ({cell["variation"] for cell in each["cells"]} for each in (before, plan))
+    if before.get("data") != plan.get("data") and played.isdisjoint(wanted):
+        raise InputError(
+            f"{folder} holds results of {before['data']}, which has nothing in common with "
+            f"{plan['data']}; name another folder"
+        )
     terms = place.terms(RunLimits())
     # Answers of a file go on from cell to cell.
     opened = {name: open_model(name, terms.surroundings, terms.connection()) for name in models}

@@ -154,6 +154,7 @@ def test_sentences_that_are_not_read_are_named(tmp_path, capsys):
         {"input": STORY, "target": "pantry"},
         {"narrative": STORY, "question": SEES},
         {"input": f"{STORY} {SEES}", "target": "bathtub"},
+        {"input": f"{STORY} {SEES}", "target": " "},
     ]
     file = tmp_path / "rows.jsonl"
     file.write_text("\n".join(map(json.dumps, rows)), encoding="utf-8")
@@ -163,7 +164,8 @@ def test_sentences_that_are_not_read_are_named(tmp_path, capsys):
     assert "row 2" in out
     assert "asks no question" in out
     assert "row 3: has no text of the answer, which is read from answer, target" in out
-    assert "1 item answered: 0 wrong, 0 undetermined; 3 could not be read" in out
+    assert "row 5: has an empty answer; write it" in out
+    assert "1 item answered: 0 wrong, 0 undetermined; 4 could not be read" in out
 
 
 @pytest.mark.parametrize(
@@ -171,6 +173,7 @@ def test_sentences_that_are_not_read_are_named(tmp_path, capsys):
     [
         (["none.json"], "none.json cannot be read"),
         (["empty.json"], "holds no rows"),
+        (["nothing.csv"], "nothing.csv is empty; give rows"),
         (["broken.json"], "is no JSON"),
         (["empty.json", "--rows", "1"], "--rows is for suites"),
         (["empty.json", "--limit", "0"], "--limit is for suites"),
@@ -181,6 +184,7 @@ def test_sentences_that_are_not_read_are_named(tmp_path, capsys):
 def test_wrong_use(tmp_path, monkeypatch, capsys, arguments, told):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "empty.json").write_text("[]", encoding="utf-8")
+    (tmp_path / "nothing.csv").touch()
     (tmp_path / "broken.json").write_text('[{"story": ', encoding="utf-8")
     assert run_command_line(["suite", "audit", *arguments]) == 2
     assert told in capsys.readouterr().err

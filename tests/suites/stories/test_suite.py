@@ -190,7 +190,7 @@ def test_wrong_input_ends_with_2(file, capsys, arguments, what):
 
 
 def test_an_unknown_suite_ends_with_2(file, capsys):
-    status = run_command_line(["suite", "lo-tom", "--data", str(file(ROWS))])
+    status = run_command_line(["suite", "sally", "--data", str(file(ROWS))])
     assert status == 2
     assert "there are hi-tom, stories, tomi, food-trucks" in capsys.readouterr().err
 
@@ -204,3 +204,34 @@ def test_the_sample_of_hi_tom_is_answered_right_at_every_order():
     assert all(found.accuracy == 1 for found in scores.values()), [
         each.why_not for each in judged if not each.ok
     ]
+
+
+def test_a_folder_of_other_data_is_refused(tmp_path, capsys):
+    """Unread questions of the data are told with the statistics."""
+    rows = [ROWS[0], {**ROWS[1], "question": "Why?"}]
+    for name, some in (("one.json", rows), ("moved.json", rows), ("other.json", ROWS[4:])):
+        (tmp_path / name).write_text(json.dumps(some))
+    out = tmp_path / "out"
+
+    def run(name):
+        status = run_command_line(
+            ["suite", "hi-tom", "--data", str(tmp_path / name), "--out", str(out)]
+        )
+        return status, capsys.readouterr()
+
+    assert (run("one.json")[0], run("moved.json")[0]) == (1, 1)
+    status, said = run("other.json")
+    assert status == 2
+    assert "moved.json, which has nothing in common with" in said.err
+    assert run_command_line(["stats", str(out)]) == 0
+    assert "1 question of the data could not be read" in capsys.readouterr().out
+
+
+def test_stories_without_questions_are_refused(tmp_path, capsys):
+    events = [{"event": "enter", "agents": ["ann"], "room": "den"}]
+    story = {"events": [*events, {"event": "is", "thing": "pear", "place": "box"}], "questions": []}
+    (tmp_path / "own.json").write_text(json.dumps(story))
+    assert run_command_line(["suite", "stories", "--data", str(tmp_path / "own.json")]) == 2
+    assert "asks no question" in capsys.readouterr().err
+    assert run_command_line(["suite", "storys", "--data", str(tmp_path / "own.json")]) == 2
+    assert "did you mean 'stories'?" in capsys.readouterr().err

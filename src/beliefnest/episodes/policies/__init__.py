@@ -115,7 +115,9 @@ def resolve_policy(
     kinds = {form.partition(":")[0] for form in named} - {"MODULE", "FILE.py"}
     near = difflib.get_close_matches(kind, sorted(kinds), n=1)  # A kind is nearest to itself.
     forms = [form for form in named if form.partition(":")[0] in near] or named
-    raise UnknownNameError(f"there is no policy {quoted(name)}; write {listed(forms, 'or')}")
+    is_slip = bool(rest) and near != [kind] and bool(near)
+    hint = f"did you mean {near[0]}:{rest}?" if is_slip else f"write {listed(forms, 'or')}"
+    raise UnknownNameError(f"there is no policy {quoted(name)}; {hint}")
 
 
 def _omniscient() -> Policy:

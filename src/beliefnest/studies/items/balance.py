@@ -1,7 +1,7 @@
 """Choice of the variations of a study of which shortcuts are right as often as a guess."""
 
 import random
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -10,14 +10,18 @@ import numpy as np
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.report import FIXED_SOLVERS, OF_BELIEFS
-from beliefnest.world.words import listed
 
 _EXACT = 1e-6
+_SLACK = 0.005
+"""Share of the questions of an order by which right answers may differ from those of guesses. With
+many shortcuts, to find a part with none can take for ever; in fewer than 67 questions it is less
+than a third of an answer, so that there is none."""
 _GAP = 0.05
 """Share by which the chosen part may be smaller than the largest: to prove that none is larger can
 take for ever."""
 _MOST_NODES = 2000
 """Greatest number of branches that are searched for a part, whatever time that takes."""
+_MOST_TOLD = 5
 _Excess = tuple[float, ...]
 """Number of right answers above what guesses have, for each shortcut and order."""
 
@@ -27,7 +31,7 @@ def balanced_names(
 ) -> frozenset[str]:
     """Return the names of nearly the most scenes on which shortcuts are right as often as guesses.
 
-    Each shortcut is balanced within each order.
+    Each shortcut is balanced within each order, to half a percent of the questions.
 
     Args:
         made: Items by the name of their scene: variation and condition.
@@ -44,7 +48,9 @@ def balanced_names(
     for scene, items in made.items():
         scenes[tuple(_excess(items, *dimension) for dimension in dimensions)].append(scene)
     kinds = sorted(scenes)
-    counts = _largest(kinds, [len(scenes[kind]) for kind in kinds])
+    asked = Counter(each.order for items in made.values() for each in items)
+    slack = [_SLACK * asked[order] + _EXACT for _, order in dimensions]
+    counts = _largest(kinds, [len(scenes[kind]) for kind in kinds], slack)
     if counts is None or not counts.any():
         raise InputError(_impossible(made, dimensions))
     chosen: set[str] = set()
@@ -72,8 +78,17 @@ def _answers(
                 yield each, answer
 
 
-def _largest(kinds: Sequence[_Excess], counts: Sequence[int]) -> Any:
-    """Return how many scenes of each kind to take, so that excesses add up to 0; None: unknown."""
+def _largest(kinds: Sequence[_Excess], counts: Sequence[int], slack: Sequence[float]) -> Any:
+    """Return how many scenes of each kind to take, so that excesses nearly add up to 0.
+
+    Args:
+        kinds: Excess of each kind of scene.
+        counts: Number of scenes of each kind.
+        slack: Greatest sum of each excess.
+
+    Returns:
+        The numbers; None: no such part is known.
+    """
     try:
         from scipy.optimize import Bounds, LinearConstraint, milp
     except ImportError:
@@ -82,7 +97,7 @@ def _largest(kinds: Sequence[_Excess], counts: Sequence[int]) -> Any:
         -np.ones(len(kinds)),
         integrality=np.ones(len(kinds)),
         bounds=Bounds(0, counts),
-        constraints=LinearConstraint(np.array(kinds).T, -_EXACT, _EXACT),
+        constraints=LinearConstraint(np.array(kinds).T, -np.array(slack), slack),
         options={"mip_rel_gap": _GAP, "node_limit": _MOST_NODES},
     )
     return None if solution.x is None else np.rint(solution.x).astype(int)
@@ -92,15 +107,13 @@ def _impossible(
     made: Mapping[str, Sequence[ItemRecord]], dimensions: Sequence[tuple[str, int]]
 ) -> str:
     every = [each for items in made.values() for each in items]
-    counts_by_name: dict[str, list[str]] = defaultdict(list)
-    for name, order in dimensions:
+    furthest = sorted(dimensions, key=lambda each: -abs(_excess(every, *each)))[:_MOST_TOLD]
+    rates = []
+    for name, order in furthest:
         answers = list(_answers(every, name, order))
         right = sum(answer == each.right for each, answer in answers)
-        if abs(_excess(every, name, order)) > _EXACT:
-            counts_by_name[name].append(f"{right} of {len(answers)} questions of order {order}")
-    rates = (f"{name} is right in {listed(counts)}" for name, counts in counts_by_name.items())
+        rates.append(f"{name} is right in {right} of {len(answers)} questions of order {order}")
     return (
-        "no part of the variations has these shortcuts at chance: "
-        f"{'; '.join(rates)}; draw more variations, vary what the answers depend on, or add "
-        "conditions"
+        f"no part of the variations has these shortcuts at chance; the furthest: {'; '.join(rates)}"
+        "; draw more variations, vary what the answers depend on, add conditions, or name fewer"
     )

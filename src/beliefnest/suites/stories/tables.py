@@ -72,6 +72,8 @@ def read_table(path: Path) -> ReadStories:
 def _rows(path: Path, text: str) -> Iterator[_Row]:
     """Yield the rows of a file as mappings."""
     start = text.lstrip()[:1]
+    if not start:
+        raise InputError(f"{path} is empty; give rows as JSON, JSON lines or CSV")
     if start in "[{":
         for value in _json_values(path, text):
             if not isinstance(value, dict):
@@ -136,12 +138,13 @@ def _texts(row: _Row, what: str, names: Sequence[str]) -> list[str]:
     if isinstance(value, list) and all(isinstance(each, dict) for each in value):
         value = [each.get("content") for each in value if each.get("role", "user") == "user"]
     texts = [value] if isinstance(value, str) else value
-    is_told = isinstance(texts, list) and all(isinstance(t, str) and t.strip() for t in texts)
-    if not texts or not is_told:
+    if not isinstance(texts, list) or not texts or not all(isinstance(t, str) for t in texts):
         raise InputError(
             f"has no text of the {what}, which is read from {', '.join(names)}; columns are "
             f"{', '.join(map(str, row))}"
         )
+    if not all(each.strip() for each in texts):
+        raise InputError(f"has an empty {what}; write it, or leave the row out")
     return texts
 
 
