@@ -133,8 +133,7 @@ def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
     return left != 0
 
 
-@inner
-def _block_cell(scene: RayScene, eye: Vector, cell: GridCell, beam: Beam) -> bool:
+def block_cell(scene: RayScene, eye: Vector, cell: GridCell, beam: Beam) -> bool:
     """Close the rays that enter the block of a cell; return True if any ray is still open."""
     i, j, k = cell
     starts, boxes = scene.starts, scene.boxes
@@ -150,6 +149,11 @@ def _block_cell(scene: RayScene, eye: Vector, cell: GridCell, beam: Beam) -> boo
             high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
         left = _block_box(eye, low, high, beam)
     return left
+
+
+_block_cell = inner(block_cell)
+_block_cell_at_once = inlined(block_cell)
+"""Version of `_block_cell` for the loop over suspects, which a call would make twice as long."""
 
 
 @inlined
@@ -212,9 +216,14 @@ def _beam_ends(scene: RayScene, eye: Vector, target: GridCell, beam: Beam) -> bo
     return True
 
 
-@merged
-def _fill_axis(slopes: npt.NDArray[np.float64], axis: int, d: float, e: float, low: int) -> None:
-    """Write the slopes of a beam's rays along one axis; d is the way to the block's middle."""
+@inner
+def aim_along(eye: Eye, cell: GridCell, beam: Beam, axis: int) -> None:
+    """Write the slopes of a beam along one axis; they depend on this coordinate of the cell only.
+
+    A loop over the cells of a grid writes those of its outer loops once.
+    """
+    slopes, e, low = beam.slopes, turned(eye[0], axis)[0], turned(cell, axis)[0]
+    d = low + 0.5 - e
     level, inner, outer = _inverse(d), _inverse(d - _CORNER), _inverse(d + _CORNER)
     face = _inverse(d + (0.5 if e > low else -0.5))
     for n in range(_SAMPLES):
@@ -245,8 +254,8 @@ def _take_middles(opens: npt.NDArray[np.int64], levels: int) -> int:
 
 
 @inner
-def _aim(eye: Eye, cell: GridCell, beam: Beam) -> int:
-    """Set up the beam from an eye to a block.
+def _open(eye: Eye, cell: GridCell, beam: Beam) -> int:
+    """Open the rays of a beam from an eye to a block; `aim_along` writes their slopes.
 
     Rays in the plane of a face are not part of the beam. The result has bit n set for each such
     ray n; the caller tries them one by one.
@@ -262,7 +271,6 @@ def _aim(eye: Eye, cell: GridCell, beam: Beam) -> int:
     for axis in range(3):
         e, low = turned(place, axis)[0], turned(cell, axis)[0]
         d = turned((x, y, z), axis)[0]
-        _fill_axis(slopes, axis, d, e, low)
         levels |= (1 << axis) if may_lie_in_face(e, d) else 0
         if low <= e <= low + 1:
             for number in range(1 + 5 * axis, 6 + 5 * axis):
@@ -301,27 +309,30 @@ def _sees_in_plane(scene: RayScene, eye: Eye, cell: GridCell, rays: int) -> bool
 @inner
 def sees_block(scene: RayScene, eye: Eye, cell: GridCell, beam: Beam) -> bool:
     """Return True if a block, within the visible distance, is seen; `beam` is scratch memory."""
-    in_plane = _aim(eye, cell, beam)
+    for axis in range(3):
+        aim_along(eye, cell, beam, axis)
+    in_plane = _open(eye, cell, beam)
     if _is_open(beam) and _beam_ends(scene, eye[0], cell, beam):
         return True
     return _sees_in_plane(scene, eye, cell, in_plane)
 
 
-@inner
+@inlined
 def sees_past(
     scene: RayScene, eye: Eye, cell: GridCell, beam: Beam, shadows: Shadows, index: int
 ) -> bool:
     """Return what `sees_block` returns, from the suspects that `cast_shadows` noted.
 
-    `index` is the index of the cell in `shadows`.
+    `index` is the index of the cell in `shadows`. The slopes along x and y are in the beam.
     """
-    in_plane = _aim(eye, cell, beam)
+    aim_along(eye, cell, beam, 2)
+    in_plane = _open(eye, cell, beam)
     left = _is_open(beam)
     count = shadows.counts[index]
     for n in range(min(count, ROOM)):
         if left:
             by = cell_at(scene.sizes, shadows.suspects[index, n])
-            left = _block_cell(scene, eye[0], by, beam)
+            left = _block_cell_at_once(scene, eye[0], by, beam)
     if left and (count <= ROOM or _beam_ends(scene, eye[0], cell, beam)):
         return True
     return _sees_in_plane(scene, eye, cell, in_plane)

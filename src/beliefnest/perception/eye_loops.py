@@ -6,7 +6,7 @@ Coordinates are those of `rays`; `Eye` is defined in `beams`.
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.perception.beams import Eye, in_field, in_reach, new_beam, sees_past
+from beliefnest.perception.beams import Eye, aim_along, in_field, in_reach, new_beam, sees_past
 from beliefnest.perception.compiling import allocating
 from beliefnest.perception.eyes import eye_sees_agent, eye_sees_block, eye_sees_point
 from beliefnest.perception.rays import RayScene, at
@@ -24,7 +24,9 @@ def seen_grid(scene: RayScene, eye: Eye, shadows: Shadows) -> npt.NDArray[np.boo
     beam = new_beam()
     px, py, pz = eye[0]
     for i in range(1, sizes[0] - 1):
+        aim_along(eye, (i, 0, 0), beam, 0)
         for j in range(1, sizes[1] - 1):
+            aim_along(eye, (i, j, 0), beam, 1)
             for k in range(1, sizes[2] - 1):
                 n = at(sizes, (i, j, k))
                 x, y, z = i + 0.5 - px, j + 0.5 - py, k + 0.5 - pz

@@ -39,7 +39,7 @@ def _slopes(low: float, high: float, near: float, far: float) -> tuple[float, fl
 
 
 @inlined
-def _side(e: float, cell: int) -> int:
+def side(e: float, cell: int) -> int:
     """Return the step to the neighbour of a cell that is nearer to the eye; 0: it is level."""
     if e < cell:
         return -1
@@ -47,7 +47,7 @@ def _side(e: float, cell: int) -> int:
 
 
 @inlined
-def _outwards(e: float, first: int, last: int, number: int) -> int:
+def outwards(e: float, first: int, last: int, number: int) -> int:
     """Return a cell of a row by number, such that nearer cells have smaller numbers."""
     start = min(max(math.floor(e), first), last)
     return start + number if start + number <= last else last - number
@@ -119,11 +119,11 @@ def _flood(
         c0, c1 = max(math.floor(ec - far), 1), min(math.floor(ec + far), size_c - 2)
         goes_on = False
         for number_b in range(b1 - b0 + 1):
-            b = _outwards(eb, b0, b1, number_b)
-            side_b = _side(eb, b)
+            b = outwards(eb, b0, b1, number_b)
+            side_b = side(eb, b)
             for number_c in range(c1 - c0 + 1):
-                c = _outwards(ec, c0, c1, number_c)
-                sides = (1 if layer != first else 0, side_b, _side(ec, c))
+                c = outwards(ec, c0, c1, number_c)
+                sides = (1 if layer != first else 0, side_b, side(ec, c))
                 ray = _arriving(light, (layer % 2, b, c), sides, (eb, ec), 1.0 / near, 1.0 / far)
                 if sides == (0, 0, 0):  # The eye is in this cell.
                     ray = (-1.0, 1.0, -1.0, 1.0)

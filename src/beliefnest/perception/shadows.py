@@ -14,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, Reaches
-from beliefnest.perception.compiling import allocating, inlined, inlined_allocating, inner
+from beliefnest.perception.compiling import allocating, inlined, inner
+from beliefnest.perception.light import outwards, side
 from beliefnest.perception.rays import GridCell, RayScene, Vector, at, turned
 
 N = TypeVar("N", int, float)
@@ -71,13 +72,6 @@ def _is_enclosed(scene: RayScene, shadows: Shadows, sides: GridCell, index: int)
         if shadows.marks[before] != HIDDEN and scene.codes[before] & OWN != FULL:
             return False
     return True
-
-
-@inlined
-def _side(e: float, cell: int, stride: int) -> int:
-    if e < cell:
-        return -stride
-    return stride if e > cell + 1 else 0
 
 
 @inlined
@@ -231,22 +225,6 @@ def _cast_box(
         layer += step
 
 
-@inlined_allocating
-def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
-    """Return the cells of a grid along an axis, without margin, from the eye outwards."""
-    order = np.empty(size - 2, dtype=np.int64)
-    up = min(max(math.floor(e), 1), size - 1)
-    down = up - 1
-    for n in range(size - 2):
-        if up < size - 1 and (down < 1 or up + 0.5 - e < e - down - 0.5):
-            order[n] = up
-            up += 1
-        else:
-            order[n] = down
-            down -= 1
-    return order
-
-
 @allocating
 def cast_shadows(scene: RayScene, reaches: Reaches, eye: Vector) -> Shadows:
     """Return the shadows of all blocks.
@@ -260,14 +238,17 @@ def cast_shadows(scene: RayScene, reaches: Reaches, eye: Vector) -> Shadows:
     shadows = Shadows(
         marks, np.zeros(size, dtype=np.uint8), np.empty((size, ROOM + 2), dtype=np.int32)
     )
-    along_y, along_z = _outward(eye[1], sizes[1]), _outward(eye[2], sizes[2])
-    for i in _outward(eye[0], sizes[0]):
-        side_x = _side(eye[0], i, sizes[1] * sizes[2])
-        for j in along_y:
-            side_y = _side(eye[1], j, sizes[2])
-            for k in along_z:
+    nx, ny, nz = sizes[0] - 2, sizes[1] - 2, sizes[2] - 2
+    for number_x in range(nx):
+        i = outwards(eye[0], 1, nx, number_x)
+        side_x = side(eye[0], i) * sizes[1] * sizes[2]
+        for number_y in range(ny):
+            j = outwards(eye[1], 1, ny, number_y)
+            side_y = side(eye[1], j) * sizes[2]
+            for number_z in range(nz):
+                k = outwards(eye[2], 1, nz, number_z)
                 index = at(sizes, (i, j, k))
-                sides = (side_x, side_y, _side(eye[2], k, 1))
+                sides = (side_x, side_y, side(eye[2], k))
                 if marks[index] != HIDDEN and _is_enclosed(scene, shadows, sides, index):
                     _hide(shadows, index)
                 mark, count = marks[index], shadows.counts[index]
