@@ -42,13 +42,15 @@ def test_the_study_of_episodes_is_one(tmp_path: Path, monkeypatch: pytest.Monkey
     goal = "episode: {goal: {reach: [{agent: ann, items: {diamond: 1}}]}}"
     Path("mine.yaml").write_text(f"{SCENARIO}\n{goal}\n", encoding="utf-8")
     Path("mine.js").write_text("", encoding="utf-8")
-    Path("minds.yaml").write_text(EPISODES, encoding="utf-8")
+    few = EPISODES.replace("seeds: 50", "seeds: 5")
+    assert few != EPISODES
+    Path("minds.yaml").write_text(few, encoding="utf-8")
     plan = bn.Study.load("minds.yaml").plan()
     players = {cell.key.player for cell in plan.cells}
     assert players == {"search", "random", "model:offline", "anne=program:mine.js"}
     # The scenario is of one size.
     assert {each.scenario for each in plan.invalid} == {"mine.yaml"}
-    assert len(plan.cells) == 2 * 50 * 2 * (4 + 1 + 4 + 1)
+    assert len(plan.cells) == 2 * 5 * 2 * (4 + 1 + 4 + 1)
 
 
 def test_groups_of_scenarios_have_labels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
