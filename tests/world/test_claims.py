@@ -73,7 +73,7 @@ def test_an_utterance_without_claims_is_as_ever() -> None:
         (lambda: claims_from_plain([{"kind": "located", "place": [1, 2, 3]}]), "lacks 'item'"),
         (
             lambda: claims_from_plain([{"kind": "guess", "place": [1, 2, 3]}]),
-            "1: invalid enum",
+            "1: 'guess' is no kind; kinds are located, absent",
         ),
         (lambda: claims_from_plain(7), "claims are 7; give a list of claims"),
         (lambda: claims_from_plain(["in red"]), "claim 1 is 'in red', which is no claim"),

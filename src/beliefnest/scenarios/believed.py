@@ -191,7 +191,9 @@ class Believed:
             case "agent", str(name):
                 beliefs = list(self._standing(state, naming, name))
             case "container", (int(), int(), int()) as at:
-                beliefs = list(_contained(state, at))
+                content = state.containers.get(at)
+                is_known = content is not None and (content.items or content.complete)
+                beliefs = [_Found(content_names(content.items))] if content and is_known else []
             case "sign", (int(), int(), int()) as at:
                 text = state.signs.get(at)
                 said = () if text is None else (sign_words(text),) if text else ("nothing", "blank")
@@ -242,13 +244,6 @@ def _located(state: State, naming: Naming, item: str) -> Iterator[_Found]:
         if dropped.name == item:
             near = names_near(dropped.position, {at: n for n, at in naming.places.items()})
             yield _Found(("floor", "ground", *near), place=dropped.position)
-
-
-def _contained(state: State, at: Position) -> Iterator[_Found]:
-    content = state.containers.get(at)
-    if content is None or not (content.items or content.complete):
-        return
-    yield _Found(content_names(content.items))
 
 
 def content_names(items: Collection[str]) -> tuple[str, ...]:

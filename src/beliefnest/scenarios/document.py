@@ -78,7 +78,7 @@ class Document:
             node = None if node is None else _child(node, key)
             if node is not None and node.origin:
                 origin, rest = node.origin, path[number + 1 :]
-        return f"{self.where(path)}: {_key_text(rest, origin)}"
+        return f"{self.where(path)}: {key_words(rest, origin)}"
 
     def where(self, path: KeyPath) -> str:
         """Return file and line of a value, or of its innermost written parent."""
@@ -101,7 +101,8 @@ class Document:
             raise self.fault(path, str(error)) from error
 
 
-def _key_text(path: KeyPath, origin: str = "") -> str:
+def key_words(path: KeyPath, origin: str = "") -> str:
+    """Return the start of a message about a value: its keys, such as `agents.eve: `."""
     text = origin
     for key in path:
         text += f"[{quoted(key)}]" if isinstance(key, int) else f".{shortened(str(key))}"

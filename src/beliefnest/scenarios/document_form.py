@@ -1,27 +1,20 @@
 """Check of a document's form: known keys, and values of the right kind."""
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
 
-from beliefnest.errors import InputError, ScenarioError
 from beliefnest.facts.reading import FORMER
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
+from beliefnest.scenarios.form_faults import FormError, converted
 from beliefnest.scenarios.format import ScenarioFile, WrittenFile
-from beliefnest.scenarios.json_schema import allowed_keys, allowed_values, wanted_form
+from beliefnest.scenarios.json_schema import allowed_keys, wanted_form
 from beliefnest.world.texts import is_well_formed, quoted, shortened
 from beliefnest.world.words import nearest_or_all
 
-_FAULT = re.compile(r"(?P<what>.*?)(?: - at (?P<key>`key` in )?`(?P<path>\$.*)`)?", re.DOTALL)
-FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\])")
-"""Step of a place as msgspec writes it: a name, an index, or any key of a mapping."""
-_UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
-_MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
-
-_F = TypeVar("_F", bound=ScenarioFile | WrittenFile)
+_F = TypeVar("_F")
 
 _LONGEST_FAULT = 160
 """Greatest number of characters of a fault that the validation found; it may quote the value."""
@@ -32,9 +25,6 @@ _HOW = ("items", "at", "state", "text", "lacks")
 
 _PLACE = "[1, 2, 3]"
 """Example of a position."""
-
-_MOST_BITS = 64
-"""Bits of whole numbers that messages repeat; Python refuses to format very long ones."""
 
 
 def check_form(document: Document) -> ScenarioFile:
@@ -52,7 +42,8 @@ def check_written(document: Document) -> ScenarioFile | WrittenFile:
     Raises:
         ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
     """
-    return _checked(document, WrittenFile if "map" in document.root.value else ScenarioFile)
+    form: Any = WrittenFile if "map" in document.root.value else ScenarioFile
+    return _checked(document, form)
 
 
 def check_rules_form(rules: Mapping[str, object]) -> None:
@@ -68,20 +59,26 @@ def check_rules_form(rules: Mapping[str, object]) -> None:
 
 def _checked(document: Document, form: type[_F]) -> _F:
     _check_texts(document, document.root, ())
-    content = _content_of(document.root, form)
-    if isinstance(content, str):
-        raise _fault(document, content, form)
-    return content
+    return converted_at(document, (), plain(document.root), form)
 
 
-def _content_of(root: YamlNode, form: type[_F]) -> _F | str:
-    """Return a document's content as typed values, or what is wrong with it."""
+def converted_at(document: Document, path: KeyPath, part: object, form: type[_F]) -> _F:
+    """Return a part of a document as a value of a type.
+
+    Args:
+        document: The document.
+        path: Place of the part.
+        part: The part as plain values.
+        form: The type.
+
+    Raises:
+        ScenarioError: The part is not as the type says; the message names file, line and key.
+    """
     try:
-        return msgspec.convert(plain(root), form)
-    except msgspec.ValidationError as error:
-        return str(error)
-    except InputError as error:  # Options of perception are checked as in code.
-        return f"{error} - at `$.perception`"
+        return converted(part, form)
+    except FormError as fault:
+        place = (*path, *fault.path)
+        raise document.fault(place, _words(document, place, fault)) from None
 
 
 def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
@@ -98,49 +95,17 @@ def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
         raise document.fault(path, "has half a character in it; write whole ones")
 
 
-def _fault(document: Document, error: str, form: type[_F]) -> ScenarioError:
-    match = _FAULT.fullmatch(error)
-    if match is None:
-        return document.fault((), shortened(error, _LONGEST_FAULT))
-    steps = [step.groupdict() for step in FAULT_STEP.finditer(match["path"] or "$")]
-    return _fault_at(document, _locate(document.root, steps, error, form), match)
-
-
-def entry_fault(document: Document, path: KeyPath, error: str) -> ScenarioError:
-    """Return the error about an entry of a document that was validated by itself.
-
-    Args:
-        document: The document.
-        path: Place of the entry.
-        error: Message of the validation.
-    """
-    match = _FAULT.fullmatch(error)
-    if match is None:
-        return document.fault(path, shortened(error, _LONGEST_FAULT))
-    inner = [
-        step["name"] or int(step["index"]) for step in FAULT_STEP.finditer(match["path"] or "")
-    ]
-    return _fault_at(document, (*path, *inner), match)
-
-
-def _fault_at(document: Document, path: KeyPath, match: re.Match[str]) -> ScenarioError:
-    """Return the error at a place."""
-    what = match["what"]
-    if unknown := _UNKNOWN_FIELD.fullmatch(what):
-        name = unknown["name"]
-        return document.fault((*path, name), f"unknown key{_hint(shortened(name), path)}")
-    if missing := _MISSING_FIELD.fullmatch(what):
-        return document.fault(path, f"the key {quoted(missing['name'])} is missing")
-    what = shortened(what[:1].lower() + what[1:].replace("`", "'"), _LONGEST_FAULT)
-    if match["key"]:
-        quotes = "; put it into quotes" if what.startswith("expected 'str'") else ""
-        return document.fault(path, f"a key in it: {what}{quotes}")
-    value = plain(_node_at(document.root, list(path)))
-    in_range = " got " in what
-    if what.startswith("expected") and (wanted := wanted_form(path, ranges=not in_range)):
-        at = _standing(document.root, value) if _PLACE in wanted else ""
-        what = f"expected {wanted}, got {quoted(value)}{at}"
-    return document.fault(path, what + _found(value, what) + _allowed(path, value, what))
+def _words(document: Document, path: KeyPath, fault: FormError) -> str:
+    """Return what is wrong at a place, and what is allowed there."""
+    what, part = shortened(fault.what, _LONGEST_FAULT), fault.part
+    if fault.kind == "unknown":
+        return f"unknown key{_hint(shortened(str(path[-1])), path[:-1])}"
+    wanted = wanted_form(path, ranges=isinstance(part, int | float))
+    if fault.kind == "type" and wanted:
+        at = _standing(document.root, part) if _PLACE in wanted else ""
+        what = f"expected {wanted}, got {quoted(part)}{at}"
+    is_bare = wanted == "a text" and not isinstance(part, str | list | dict)
+    return f"{what}; put it into quotes" if is_bare else f"{what}{fault.hint}"
 
 
 def _standing(root: YamlNode, name: object) -> str:
@@ -155,24 +120,6 @@ def _standing(root: YamlNode, name: object) -> str:
     return f"; {quoted(name)} is at {at}" if at and isinstance(name, str) else ""
 
 
-def _found(value: object, what: str) -> str:
-    """Return a value for a message, if the error does not already say it."""
-    is_short = isinstance(value, float | None) or (
-        isinstance(value, int) and value.bit_length() <= _MOST_BITS
-    )
-    is_quoted = not what.startswith("expected") or ", got" in what
-    return f", got {quoted(value)}" if is_short and not is_quoted else ""
-
-
-def _allowed(path: KeyPath, value: object, what: str) -> str:
-    """Return what is allowed at a place, for a message."""
-    if values := allowed_values(path):
-        forms = [f"{{{key}: ...}}" for key in allowed_keys(path)]
-        return f"; allowed are {', '.join([*values, *forms])}"
-    is_text = what.startswith("expected a text, got") and not isinstance(value, list | dict)
-    return "; put it into quotes" if is_text else ""
-
-
 def _hint(name: str, path: KeyPath) -> str:
     allowed = allowed_keys(path)
     inner = [key for key in allowed if name in allowed_keys((*path, key))]
@@ -183,43 +130,3 @@ def _hint(name: str, path: KeyPath) -> str:
     if FORMER.get(name) in allowed:
         return f"; write {quoted(FORMER[name])}"
     return nearest_or_all(name, allowed, "keys are")
-
-
-def _locate(
-    root: YamlNode, steps: list[dict[str, str | None]], error: str, form: type[_F]
-) -> KeyPath:
-    """Return the place of an error, for which msgspec writes `[...]` instead of mapping keys.
-
-    For each `[...]`, try the mapping with only one entry at a time. The entry that still causes
-    the error is the wrong one.
-    """
-    path: list[str | int] = []
-    for step in steps:
-        if step["name"] is not None:
-            path.append(step["name"])
-        elif step["index"] is not None:
-            path.append(int(step["index"]))
-        else:
-            cuts = {key: _with_only(root, path, key) for key in _node_at(root, path).value}
-            key = next((key for key, cut in cuts.items() if _content_of(cut, form) == error), None)
-            if key is None:
-                break
-            root = cuts[key]
-            path.append(key)
-    return tuple(path)
-
-
-def _node_at(root: YamlNode, path: list[str | int]) -> YamlNode:
-    for key in path:
-        root = root.value[key]
-    return root
-
-
-def _with_only(node: YamlNode, path: list[str | int], key: str | int) -> YamlNode:
-    """Return the document with the mapping at a path cut down to one key."""
-    if not path:
-        return YamlNode({key: node.value[key]}, node.line)
-    head, *rest = path
-    value = node.value.copy()
-    value[head] = _with_only(value[head], rest, key)
-    return YamlNode(value, node.line)

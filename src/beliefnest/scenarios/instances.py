@@ -22,7 +22,7 @@ from beliefnest.perception.percept import gaze_from
 from beliefnest.perception.sight import Geometry, Sight
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, plain
-from beliefnest.scenarios.document_form import entry_fault
+from beliefnest.scenarios.document_form import converted_at
 from beliefnest.scenarios.format import InstanceEntry, ParameterEntry, TerrainEntry
 from beliefnest.scenarios.loading import condition_numbers, scenario_in
 from beliefnest.scenarios.parameters import broken_constraint, check_declared, choices, declared_in
@@ -296,10 +296,7 @@ def _rule(
     if name not in declared:
         hint = nearest_or_all(str(name), [*declared], "declared are")
         raise document.fault(path, f"is no parameter{hint}")
-    try:
-        rule = msgspec.convert(plain(node) or {}, InstanceEntry)
-    except msgspec.ValidationError as error:
-        raise entry_fault(document, path, str(error)) from None
+    rule = converted_at(document, path, plain(node) or {}, InstanceEntry)
     for other in rule.differs_from:
         if other not in declared:
             raise document.fault((*path, "differs_from"), f"{quoted(other)} is no parameter")

@@ -123,11 +123,6 @@ def allowed_keys(path: Iterable[str | int]) -> list[str]:
     return sorted({key for place in _places(path) for key in place.get("properties", {})})
 
 
-def allowed_values(path: Iterable[str | int]) -> list[str]:
-    """Return the allowed words at a place of a scenario file, if they are enumerated."""
-    return sorted({str(value) for place in _places(path) for value in place.get("enum", [])})
-
-
 def wanted_form(
     path: Iterable[str | int], file: type = ScenarioFile, *, ranges: bool = False
 ) -> str:

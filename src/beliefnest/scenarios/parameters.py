@@ -14,8 +14,6 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-import msgspec
-
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import (
     MAX_CHARACTERS,
@@ -27,7 +25,7 @@ from beliefnest.scenarios.document import (
     under,
     wrapped,
 )
-from beliefnest.scenarios.document_form import entry_fault
+from beliefnest.scenarios.document_form import converted_at
 from beliefnest.scenarios.expressions import evaluate, names_in
 from beliefnest.scenarios.format import ParameterEntry
 from beliefnest.world.texts import quoted
@@ -84,10 +82,7 @@ def _declared(document: Document, name: object, entry: YamlNode) -> ParameterEnt
     path = ("parameters", str(name))
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise document.fault(path, "is no name; use letters, digits and _")
-    try:
-        declaration = msgspec.convert(plain(entry), ParameterEntry)
-    except msgspec.ValidationError as error:
-        raise entry_fault(document, path, str(error)) from None
+    declaration = converted_at(document, path, plain(entry), ParameterEntry)
     if declaration.values and declaration.range is not None:
         raise document.fault(path, "give 'values' or 'range', not both")
     if declaration.range is not None and declaration.range[0] > declaration.range[1]:

@@ -4,14 +4,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import msgspec
 from msgspec.structs import replace
 
 from beliefnest.episodes.policies import policy_beside
 from beliefnest.episodes.task import Task
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, plain
-from beliefnest.scenarios.document_form import FAULT_STEP
+from beliefnest.scenarios.form_faults import FormError, converted
 from beliefnest.scenarios.json_schema import wanted_form
 from beliefnest.scenarios.sources import builtin_names
 from beliefnest.studies.checking import StudyKeyError, several
@@ -41,9 +40,9 @@ def read_design(
             f"`scenarios: [{Path(document.source).name}]`"
         )
     try:
-        keys = msgspec.convert(plain(document.root), StudyKeys)
-    except msgspec.ValidationError as error:
-        raise _fault(document, str(error)) from None
+        keys = converted(plain(document.root), StudyKeys)
+    except FormError as fault:
+        raise document.fault(fault.path, _words(fault)) from None
     if keys.world is not None:
         with document.naming(("world",)):
             check_world(keys.world, servers=False)
@@ -104,20 +103,8 @@ def _policies_beside(policies: Policies, folder: Path) -> Policies:
     }
 
 
-def _fault(document: Document, error: str) -> ScenarioError:
-    what, _, place = error.partition(" - at `$")
-    path: list[str | int] = []
-    for step in FAULT_STEP.finditer(place):
-        if step["any"]:
-            break
-        path.append(step["name"] or int(step["index"]))
-    if what.startswith("Object contains unknown field"):
-        path = [what.split("`")[1]]
-        what = f"unknown key{nearest_or_all(str(path[0]), StudyKeys.__struct_fields__)}"
-    elif " got " in what and path:
-        value = document.root
-        for key in path:
-            value = value.value[key]
-        what = f"expected {wanted_form(path, StudyKeys)}, got {quoted(plain(value))}"
-    what = what[:1].lower() + what[1:].replace("`", "'")
-    return document.fault(tuple(path), what)
+def _words(fault: FormError) -> str:
+    """Return what is wrong with the value of a key."""
+    if fault.kind == "type":
+        return f"expected {wanted_form(fault.path, StudyKeys)}, got {quoted(fault.part)}"
+    return f"{fault.what}{fault.hint}"

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, Literal
+from typing import Any
 
 import msgspec
 
@@ -163,13 +163,15 @@ class Claim:
 class _Plain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A claim as plain data; `Claim` checks the values, for clearer messages."""
 
-    kind: Literal["located", "absent", "position", "block"]
+    kind: Any = None
     place: Any = None
     item: Any = None
     agent: Any = None
     state: Any = None
 
     def value(self) -> Claim:
+        if self.kind not in [*ClaimKind]:
+            raise InputError(f"{quoted(self.kind)} is no kind; kinds are {', '.join(ClaimKind)}")
         needed = {"position": "agent", "block": "state"}.get(self.kind, "item")
         for name in (needed, "place"):
             if getattr(self, name) is None:
@@ -181,7 +183,7 @@ class _Plain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
                 return Claim.absent(self.item, self.place)
             case "position":
                 return Claim.position(self.agent, self.place)
-            case "block":
+            case _:
                 return Claim.block(self.place, self.state)
 
 
@@ -203,7 +205,7 @@ def _claim(number: int, plain: object) -> Claim:
     try:
         return msgspec.convert(plain, _Plain).value()
     except msgspec.ValidationError as fault:
-        what = str(fault).replace("`", "'").removesuffix(" - at '$.kind'")
+        what = str(fault).replace("`", "'")
         raise InputError(f"claim {number}: {what[:1].lower()}{what[1:]}") from fault
     except BeliefNestError as fault:
         raise type(fault)(f"claim {number}: {fault}") from fault

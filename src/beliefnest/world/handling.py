@@ -59,9 +59,8 @@ class Handling:
 
     def is_pressed(self, registry: Registry, state: int) -> bool:
         """Return True if a block is a pressed button."""
-        if not self.pressed_ticks(registry.name(state)):
-            return False
-        return registry.properties(state)["powered"] == "true"
+        is_button = self.pressed_ticks(registry.name(state)) > 0
+        return is_button and registry.properties(state)["powered"] == "true"
 
     def drops(self, name: str, tools: Iterable[str]) -> Items:
         """Return the items that a block drops when it is broken with one of the given tools.
@@ -144,10 +143,8 @@ def put_block(
 
 def free_to_put(registry: Registry, state_at: StateAt, place: Position) -> bool:
     """Return True if a place is air and has a solid block beside it to place something against."""
-    if state_at(place) not in registry.airs:
-        return False
     around = (state_at(_beside(place, side)) for side in _SIDES)
-    return any(bool(registry.boxes(each)) for each in around)
+    return state_at(place) in registry.airs and any(registry.boxes(each) for each in around)
 
 
 def check_holds_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:

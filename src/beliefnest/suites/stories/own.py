@@ -1,26 +1,22 @@
 """User-written stories: JSON lines of events and questions (format: docs/batteries.md)."""
 
-import re
 from collections.abc import Collection
 from pathlib import Path
-from typing import get_args
+from typing import Any
 
 import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.perception.options import ContainerMode, Testimony
+from beliefnest.scenarios.document import key_words
+from beliefnest.scenarios.form_faults import FormError, converted
 from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.grammar import Agent, Line, StoryEvent, Write, parse_line
 from beliefnest.suites.stories.played_story import Knowing, check_question
 from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
 from beliefnest.world.texts import quoted
-from beliefnest.world.words import nearest_or_all
-
-_FAULT = re.compile(r"(?P<what>.*?)(?: - at `\$\.?(?P<path>.*)`)?", re.DOTALL)
-_EVENT = re.compile(r"events\[(\d+)\]\.?")
-_UNKNOWN = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
 
 
 class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -73,9 +69,12 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> ReadStories:
             continue
         where = f"{path}, line {number}"
         try:
-            own_story = decode_json(line, _OwnStory)
+            own_story = converted(decode_json(line, Any), _OwnStory)
         except msgspec.DecodeError as error:
-            unread.append(Unread(where, (_form_fault(error),)))
+            unread.append(Unread(where, (str(error),)))
+            continue
+        except FormError as fault:
+            unread.append(Unread(where, (_form_fault(fault),)))
             continue
         story, faults = _story(number, own_story)
         if story is not None:
@@ -86,24 +85,14 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> ReadStories:
     return ReadStories(tuple(stories), tuple(unread))
 
 
-def _form_fault(fault: msgspec.DecodeError) -> str:
+def _form_fault(fault: FormError) -> str:
     """Return a message that says where a story has a wrong form, and what is allowed there."""
-    match = _FAULT.fullmatch(str(fault))
-    if match is None:
-        return str(fault)
-    what, path = match["what"], match["path"] or ""
-    words = what[:1].lower() + what[1:].replace("`", "'")
-    fields = {field.name: field.type for field in msgspec.structs.fields(_OwnStory)}
-    if unknown := _UNKNOWN.fullmatch(what):
-        name = unknown["name"]
-        words = f"unknown key {quoted(name)}{'' if path else nearest_or_all(name, [*fields])}"
-    if what.startswith("Invalid value") and path.endswith(".event"):
-        kinds = [str(kind.__struct_config__.tag) for kind in get_args(StoryEvent)]
-        words += nearest_or_all(what.split("'")[1], kinds)
-    if what.startswith("Invalid enum value"):
-        words += f"; allowed are {', '.join(map(str, get_args(fields.get(path))))}"
-    where = _EVENT.sub(lambda event: f"event {int(event[1]) + 1}: ", path).removesuffix(": ")
-    return f"{where}: {words}" if where else words
+    match fault.path:
+        case ("events", int(number), *rest):
+            where = f"event {number + 1}: {key_words(tuple(rest))}"
+        case path:
+            where = key_words(path)
+    return f"{where}{fault.what}{fault.hint}"
 
 
 def _story(number: int, own_story: _OwnStory) -> tuple[StoryItems | None, tuple[str, ...]]:
