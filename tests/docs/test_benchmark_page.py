@@ -21,7 +21,7 @@ def test_the_page_leads_to_a_released_set(
     Path("walks-out.yaml").write_text(SCENARIO, encoding="utf-8")
     Path("study.yaml").write_text(STUDY, encoding="utf-8")
     commands = re.findall(r"^\$ beliefnest (.*)$", PAGE, re.MULTILINE)
-    assert len(commands) == 3
+    assert len(commands) == 5
     for command in commands:
         assert run_command_line(shlex.split(command)) == 0
     printed = capsys.readouterr().out

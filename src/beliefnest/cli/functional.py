@@ -42,7 +42,7 @@ def run_functional(options: ItemsOptions) -> int:
     design = check_functional(Study.load(options.study).design, str(options.study))
     families, seeds, jobs = list(families_of(design)), design.seeds, options.jobs
     model, repeats = options.model, design.repeats
-    with playing(options.study.stem, options.out) as (folder, say):
+    with playing(options.study.stem, options.folder) as (folder, say):
         done = [certified(each, seeds, folder / each.folder, jobs, say) for each in families]
         pairs = [
             paired(each, model, seeds, repeats, folder / each.folder / "model", jobs, say)
@@ -54,9 +54,9 @@ def run_functional(options: ItemsOptions) -> int:
         rows = [each.plain() for each in (*pairs, *by_order(pairs))]
         content |= {"model": model, "pairs": rows}
         report.append(_pairs(rows))
-        with replacing(options.out / "functional.png") as out:
+        with replacing(options.folder / "functional.png") as out:
             plot_pairs(pairs, done).savefig(out, format="png", dpi=150)
-    replace_file(options.out / "functional.json", json.dumps(content, indent=2) + "\n")
+    replace_file(options.folder / "functional.json", json.dumps(content, indent=2) + "\n")
     faults = [
         f"{each.family}, order {each.order}: {fault}" for each in done for fault in each.faults
     ]

@@ -23,6 +23,12 @@ def run_items(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The study or the folder is wrong, or a script failed.
     """
+    if options.models or options.verify_results:
+        from beliefnest.cli.item_models import run_models, run_verify_results
+
+        if options.verify_results:
+            return run_verify_results(options)
+        return run_models(options)
     if options.functional:
         from beliefnest.cli.functional import run_functional
 
@@ -32,17 +38,17 @@ def run_items(options: ItemsOptions) -> int:
         made = Study.load(options.study).items(**set_options, on_item=on_progress)
     differing: list[str] = []
     if options.verify:
-        there = read_description(options.out)
-        differing = replace(made, made_with=there.made_with).differences(options.out)
+        there = read_description(options.folder)
+        differing = replace(made, made_with=there.made_with).differences(options.folder)
         if differing and there.made_with != made.made_with:
             of_set, here = (_versions(each) for each in (there.made_with, made.made_with))
             differing.append(f"made with {of_set}, and again with {here}: that may be the cause")
     else:
-        made.write(options.out)
+        made.write(options.folder)
     unanswerable = sum(each.is_unanswerable for each in made.dropped)
     report = report_of(made.items) if options.report else {}
     summary = {
-        "folder": str(options.out),
+        "folder": str(options.folder),
         "items": len(made.items),
         "dropped": len(made.dropped),
         "differences": differing,
@@ -65,13 +71,13 @@ def _set_options(options: ItemsOptions) -> dict[str, Any]:
     }
     if not options.verify:
         own = {name: value for name, value in options_of_set.items() if value is not None}
-        check_folder(options.out, options.held_out or 0.0)
+        check_folder(options.folder, options.held_out or 0.0)
         return {"name": options.study.stem, **own}
     for name, value in options_of_set.items():
         if value is not None:
             option = "set-version" if name == "version" else name.replace("_", "-")
             raise InputError(f"--{option} is for writing a set; --verify reads it from the folder")
-    there = read_description(options.out)
+    there = read_description(options.folder)
     return {name: getattr(there, name) for name in ("name", *options_of_set)}
 
 
@@ -93,11 +99,11 @@ def _parts(
     yield from differing
     size = ", ".join(f"{counted(len(each), part)}" for part, each in _sizes(made))
     if not options.verify:
-        yield f"{options.out}: {size}"
+        yield f"{options.folder}: {size}"
     elif not differing:
-        public = read_description(options.out).public_only(options.out)
+        public = read_description(options.folder).public_only(options.folder)
         part = "; the held-out part is not there, and the rest" if public else ";"
-        yield f"{options.out}: {size}{part} made again with the same bytes"
+        yield f"{options.folder}: {size}{part} made again with the same bytes"
 
 
 def _sizes(made: ItemSet) -> Iterator[tuple[str, tuple[object, ...]]]:

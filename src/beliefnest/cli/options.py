@@ -379,8 +379,13 @@ class StudyOptions(ModelOptions):
 class ItemsOptions:
     """Options of `beliefnest items`."""
 
-    study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the set.")]
+    study: Annotated[
+        Path, typer.Argument(help="YAML file of the study; to ask models, folder of a set.")
+    ]
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Folder of the set; of results, with --models."),
+    ] = None
     report: Annotated[
         bool, typer.Option("--report", help="Print balance, and what shortcuts score.")
     ] = False
@@ -402,8 +407,27 @@ class ItemsOptions:
     model: Annotated[
         str | None, typer.Option(help="Model to ask and to let play, with --functional.")
     ] = None
-    jobs: Annotated[int, typer.Option(min=1, help="Processes, with --functional.")] = 2
+    models: Annotated[
+        str | None, typer.Option(help="Models that answer a set, separated by commas.")
+    ] = None
+    verify_results: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Results of models on a set to check.")
+    ] = None
+    max_tokens: Annotated[
+        int | None, typer.Option(min=1, help="Token limit of --models; default: none.")
+    ] = None
+    max_cost: Annotated[
+        float, typer.Option(min=0, help="Cost limit of --models in US dollars.")
+    ] = 5.0
+    jobs: Annotated[int, typer.Option(min=1, help="Processes, with --functional or --models.")] = 2
     json: Json = False
+
+    @property
+    def folder(self) -> Path:
+        """Return the folder to write or verify; raise InputError if none is named."""
+        if self.out is None:
+            raise InputError("name the folder of the set, or of the results, with -o")
+        return self.out
 
 
 @dataclass(frozen=True, slots=True)

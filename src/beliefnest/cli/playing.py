@@ -43,13 +43,18 @@ def status_of(result: StudyResult) -> int:
     Raises:
         ModelError: A cell has no result.
     """
-    rows = [row for row in result.rows if row.get(PARTICIPANT) is None]
+    check_all_played(result)
+    rows = (row for row in result.rows if row.get(PARTICIPANT) is None)
+    return 0 if all(row["ok"] is not False for row in rows) else 1
+
+
+def check_all_played(result: StudyResult) -> None:
+    """Raise ModelError if a cell has no result."""
     failed = result.failed
     if failed:
-        counting = {row["cell"] for row in rows if row["ok"] is False} & failed.keys()
+        counting = {row["cell"] for row in result.rows if row["ok"] is False} & failed.keys()
         summary = without_result_words(len(failed), len(result.plan["cells"]), len(counting))
         raise ModelError(
             f"{summary}; run the same command to try them again; the first: "
             f"{next(iter(failed.values()))}"
         )
-    return 0 if all(row["ok"] is not False for row in rows) else 1

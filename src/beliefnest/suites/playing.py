@@ -1,6 +1,6 @@
 """Playing of a suite: its cells, their table, and their folder, which is like that of a study."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import NoneType
@@ -89,7 +89,13 @@ class _PlayedRows(msgspec.Struct, Generic[RowT]):
 
 
 def suite_kind(
-    name: str, row: type, groups: tuple[str, ...], *, is_judged: bool, means: Sequence[str] = ()
+    name: str,
+    row: type,
+    groups: tuple[str, ...],
+    *,
+    is_judged: bool,
+    means: Sequence[str] = (),
+    identity: Collection[str] = (),
 ) -> CellKind:
     """Return the kind of the cells of a suite.
 
@@ -99,6 +105,7 @@ def suite_kind(
         groups: Default columns by which summaries group rows.
         is_judged: True if rows are right or wrong.
         means: Columns whose means are in summaries.
+        identity: Columns that tell the rows of a suite apart; rows are compared by one of them.
     """
 
     def results(cell: Mapping[str, Any], content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
@@ -113,7 +120,7 @@ def suite_kind(
         first=(Column("suite", "string", of_key("suite"), identifies=True),),
         columns=(
             Column("variation", "string", lambda source: source.cell["variation"], shown=True),
-            *_columns(row),
+            *_columns(row, identity),
             Column("seed", "int64", lambda source: source.cell["seed"]),
             Column("cell", "string", lambda source: source.cell["name"]),
             Column("copy_of", "string", of_result("copy_of")),
@@ -128,10 +135,11 @@ def suite_kind(
     return CellKind(name, _SuitePlan, _PlayedRows[row], table, subject="suite")  # type: ignore[valid-type]
 
 
-def _columns(form: type) -> Iterator[Column]:
+def _columns(form: type, identity: Collection[str]) -> Iterator[Column]:
     for each in msgspec.structs.fields(form):
         (kind,) = {*(get_args(each.type) or (each.type,))} - {NoneType}
-        yield Column(each.name, _COLUMNS[kind], of_result(each.name), shown=True)
+        read, is_part = of_result(each.name), each.name in identity
+        yield Column(each.name, _COLUMNS[kind], read, shown=True, identifies=is_part)
 
 
 def play_suite(
@@ -141,6 +149,8 @@ def play_suite(
     about: Mapping[str, Any],
     models: Iterable[str],
     on_progress: OnStudyProgress,
+    limits: RunLimits | None = None,
+    jobs: int = 1,
 ) -> StudyResult:
     """Play the cells of a suite without a result in a folder, and return all results.
 
@@ -151,6 +161,8 @@ def play_suite(
         about: Further values of the plan.
         models: Names of the models that the cells ask.
         on_progress: Function that receives the progress.
+        limits: Limits of tokens and cost; None: the default ones.
+        jobs: Number of cells to play in parallel; with several, each cell opens its models.
 
     Raises:
         InputError: The folder holds something else or a suite of other data, or another process
@@ -168,10 +180,11 @@ def play_suite(
             f"{folder} holds results of {before['data']}, which has nothing in common with "
             f"{plan['data']}; name another folder"
         )
-    terms = place.terms(RunLimits())
+    terms = place.terms(limits or RunLimits())
     # Answers of a file go on from cell to cell.
     opened = {name: open_model(name, terms.surroundings, terms.connection()) for name in models}
     with holding(place.path):
         place.write_plan(plan)
-        run_cells(cells, place, replace(terms, models=opened), 1, "loky", on_progress, ahead)
+        shared = replace(terms, models=opened) if jobs == 1 else terms
+        run_cells(cells, place, shared, jobs, "loky", on_progress, ahead)
     return StudyResult(place)

@@ -1,0 +1,119 @@
+"""`beliefnest items --models` and `--verify-results`: models on a set of items, compared."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from beliefnest.cli.console import Printed, print_report, result_table
+from beliefnest.cli.options import ItemsOptions
+from beliefnest.cli.playing import check_all_played, playing, write_tables
+from beliefnest.cli.report import cost_text
+from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.files import replace_file
+from beliefnest.llm.budget import RunLimits
+from beliefnest.scenarios.judging import unanswered_words
+from beliefnest.studies.counting import count_rows
+from beliefnest.studies.result import StudyResult
+from beliefnest.suites.items.cells import ITEM_KIND, item_cells
+from beliefnest.suites.items.results import PublishedSet, check_results, results_of
+from beliefnest.suites.playing import play_suite
+from beliefnest.world.words import counted
+
+RESULTS = "results.jsonl"
+
+
+def run_models(options: ItemsOptions) -> int:
+    """Ask models all items of a set, and compare them; return the exit status.
+
+    Raises:
+        BeliefNestError: The input is wrong, or an item has no result.
+    """
+    items, folder = PublishedSet.read(options.study), options.folder
+    models = [each.strip() for each in (options.models or "").split(",") if each.strip()]
+    if not models or len({*models}) < len(models):
+        raise InputError(f"--models is {options.models!r}; name each model once, with commas")
+    cells = item_cells(items.name, items.choices, models)
+    about = {"suites": [items.name], "models": models, "version": items.version}
+    limits = RunLimits(options.max_tokens, options.max_cost)
+    with playing(items.name, folder) as (place, on_progress):
+        result = play_suite(
+            place, ITEM_KIND, cells, about, models, on_progress, limits, options.jobs
+        )
+    write_tables(result)
+    replace_file(folder / RESULTS, results_of(items, result.rows))
+    lines = [*_left_out(items), *_figure(result, folder), f"results: {folder / RESULTS}"]
+    _print(options, {"folder": str(folder)}, result.rows, lines)
+    check_all_played(result)
+    return 0
+
+
+def run_verify_results(options: ItemsOptions) -> int:
+    """Check a file of results against the set of a folder; return the exit status.
+
+    Raises:
+        BeliefNestError: The set or the file cannot be read.
+    """
+    items = PublishedSet.read(options.out or options.study)
+    file = options.verify_results or options.study / RESULTS
+    checked = check_results(items, file)
+    lines = [
+        *checked.faults,
+        *(
+            f"{model}: {counted(count, 'item')} without a sound result, counted as not right"
+            for model, count in checked.missing.items()
+        ),
+    ]
+    report = {"results": str(file), "faults": list(checked.faults), "missing": checked.missing}
+    _print(options, report, checked.rows, [*lines, *([] if lines else [f"{file}: sound"])])
+    return int(bool(lines))
+
+
+def _left_out(items: PublishedSet) -> Iterator[str]:
+    left = len(items.items) - len(items.choices)
+    if left:
+        yield f"not asked: {counted(left, 'item')} without options"
+
+
+def _figure(result: StudyResult, folder: Path) -> Iterator[str]:
+    """Draw accuracy by order and model, and tell where, or that matplotlib is missing."""
+    try:
+        figure = result.plot(["order", "model"])
+    except MissingExtraError as error:
+        yield f"no figure: {error}"
+        return
+    for ending in ("svg", "pdf", "png"):
+        figure.savefig(folder / f"accuracy.{ending}")
+    yield f"figure: {folder / 'accuracy.svg'}, and as PDF and PNG"
+
+
+def _print(
+    options: ItemsOptions,
+    report: Mapping[str, Any],
+    rows: Sequence[Mapping[str, Any]],
+    lines: Sequence[str],
+) -> None:
+    groups = [*count_rows(rows, ["model"]), *count_rows(rows, ["model", "order"])]
+    parts: list[Printed] = [_table(groups), *lines]
+    print_report({**report, "models": groups}, parts, as_json=options.json)
+
+
+def _table(groups: Sequence[Mapping[str, Any]]) -> Table:
+    numbers = ("order", "items", "right", "accuracy", "95 %", "chance", "tokens", "cost")
+    table = result_table("model", *numbers, "not answered", right=numbers)
+    for group in groups:
+        judged = group["judged"]
+        table.add_row(
+            group["model"],
+            str(group.get("order", "all")),
+            str(judged),
+            str(group["right"]),
+            f"{group['accuracy']:.1%}" if judged else "-",
+            f"{group['low']:.0%} to {group['high']:.0%}" if judged else "-",
+            "-" if group["chance"] is None else f"{group['chance']:.0%}",
+            f"{group['tokens']:,}",
+            cost_text(group["cost"]),
+            unanswered_words(group),
+        )
+    return table

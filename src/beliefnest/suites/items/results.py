@@ -1,0 +1,181 @@
+"""File of the results of a set, to which anybody can append those of further models."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.files import read_regular
+from beliefnest.llm.messages import Answer, Finish
+from beliefnest.scenarios.record_forms import read_lines
+from beliefnest.studies.items.exports import sha256
+from beliefnest.studies.items.item_set import read_description
+from beliefnest.studies.items.record import ItemRecord
+from beliefnest.suites.items.cells import AnsweredItem, judged
+from beliefnest.world.texts import quoted
+
+
+class ItemResult(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Line of a file of results.
+
+    Attributes:
+        set: Name of the set.
+        version: Its version.
+        digest: SHA-256 of its `items.jsonl`.
+        id: Id of the item.
+        model: Name of the model.
+        answered: Option that the model named; None: none, or several.
+        ok: True if that is the right one.
+        outcome: `ok`, `wrong`, or why there is no answer.
+        finish: Reason for the end of the answer; empty: no answer came.
+        text: The whole answer.
+    """
+
+    set: str
+    version: str
+    digest: str
+    id: str
+    model: str
+    answered: str | None
+    ok: bool
+    outcome: str
+    finish: Finish | Literal[""]
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedSet:
+    """Public part of a set in a folder.
+
+    Attributes:
+        name: Its name.
+        version: Its version.
+        digest: SHA-256 of its `items.jsonl`.
+        items: The items.
+    """
+
+    name: str
+    version: str
+    digest: str
+    items: tuple[ItemRecord, ...]
+
+    @staticmethod
+    def read(folder: Path) -> "PublishedSet":
+        """Read the set of a folder.
+
+        Raises:
+            InputError: The folder holds no whole set.
+        """
+        description, file = read_description(folder), folder / "items.jsonl"
+        items = tuple(read_lines(file, ItemRecord))
+        if not items:
+            raise InputError(f"{file} has no items; make the set anew")
+        digest = sha256(read_regular(file))
+        return PublishedSet(description.name, description.version, digest, items)
+
+    @property
+    def choices(self) -> tuple[ItemRecord, ...]:
+        """Return the items with options, which alone can be judged without their nests."""
+        return tuple(each for each in self.items if each.options)
+
+
+def results_of(items: PublishedSet, rows: Iterable[Mapping[str, Any]]) -> bytes:
+    """Return the file of results of the rows that a set gave; rows without a verdict are left."""
+    answers = (msgspec.convert(row, AnsweredItem) for row in rows if row["ok"] is not None)
+    of_set = {"set": items.name, "version": items.version, "digest": items.digest}
+    kept = ("id", "model", "answered", "ok", "outcome", "finish", "text")
+    lines = ({**of_set, **{name: getattr(each, name) for name in kept}} for each in answers)
+    return b"".join(msgspec.json.encode(each) + b"\n" for each in lines)
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedResults:
+    """Result of checking a file of results.
+
+    Attributes:
+        rows: Sound results, as rows for `count_rows`.
+        missing: Number of items without a result, by model.
+        faults: What is wrong, each with its line.
+    """
+
+    rows: Sequence[Mapping[str, Any]]
+    missing: Mapping[str, int]
+    faults: Sequence[str]
+
+
+def check_results(items: PublishedSet, file: Path) -> CheckedResults:
+    """Check results against their set: each answer is read from its text again, and judged.
+
+    Args:
+        items: The set.
+        file: File of results.
+
+    Raises:
+        InputError: The file cannot be read, or a line is no result.
+    """
+    if not file.is_file():
+        raise InputError(f"there is no file of results at {file}")
+    results = read_lines(file, ItemResult)
+    if not results:
+        raise InputError(f"{file} has no results")
+    by_id = {each.id: each for each in items.choices}
+    faults: list[str] = []
+    sound: dict[str, dict[str, ItemResult]] = {each.model: {} for each in results}
+    for number, each in enumerate(results, 1):
+        own = [*_faults(items, by_id, each)]
+        if each.id in sound[each.model]:
+            own.append(f"{each.model} has a result of {each.id} before")
+        faults += [f"{file}:{number}: {fault}" for fault in own]
+        if not own:
+            sound[each.model][each.id] = each
+    rows = [
+        _row(model, item, own.get(item.id))
+        for model, own in sound.items()
+        for item in items.choices
+    ]
+    missing = {
+        model: len(by_id) - len(own) for model, own in sound.items() if len(own) < len(by_id)
+    }
+    return CheckedResults(rows, missing, faults)
+
+
+def _row(model: str, item: ItemRecord, result: ItemResult | None) -> Mapping[str, Any]:
+    """Return the row of an item; without a sound result it is not right."""
+    return {
+        "model": model,
+        "order": item.order,
+        "family": item.family,
+        "variation": item.skeleton,
+        "chance": item.chance,
+        "ok": result is not None and result.ok,
+        "outcome": "no_answer" if result is None else result.outcome,
+    }
+
+
+def _faults(
+    items: PublishedSet, by_id: Mapping[str, ItemRecord], result: ItemResult
+) -> Iterator[str]:
+    """Yield what is wrong with a result."""
+    for name, own, theirs in (
+        ("set", items.name, result.set),
+        ("version", items.version, result.version),
+        ("digest", items.digest, result.digest),
+    ):
+        if own != theirs:
+            yield f"{name} is {quoted(theirs)}, and this set has {quoted(own)}"
+            return
+    item = by_id.get(result.id)
+    if item is None:
+        yield f"the set has no item {quoted(result.id)} with options"
+        return
+    if not result.finish:
+        read: Mapping[str, Any] = {"answered": None, "ok": False, "outcome": "no_answer"}
+    else:
+        read = judged(item, Answer(result.text, finish=result.finish))
+    for name in ("answered", "ok", "outcome"):
+        stated = getattr(result, name)
+        if stated != read[name]:
+            yield f"{name} is {quoted(stated)}; the text of the answer gives {quoted(read[name])}"
