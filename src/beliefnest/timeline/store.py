@@ -135,7 +135,7 @@ class Journal:
     """
 
     def __init__(self, database: Database | None = None) -> None:
-        self._has_file = database is not None
+        self._has_file, self._made_past = database is not None, False
         if database is None:
             database = Database.temporary(RECORDS)
             # Users need not close this journal, and can read it after `close`.
@@ -444,15 +444,16 @@ class Journal:
     @property
     def _has_past(self) -> bool:
         """True if there are tables for entries, checkpoints and states of bodies."""
-        # Asked each time, because undoing a call may remove the tables of a temporary database.
+        # Asked again, because undoing a call may remove the tables of a temporary database.
         made = "SELECT 1 FROM sqlite_master WHERE name = 'piece'"
-        return self._has_file or self._database.row(made) is not None
+        return self._has_file or (self._made_past and self._database.row(made) is not None)
 
     @contextmanager
     def _writing_past(self) -> Iterator[None]:
         """Make the statements inside the block atomic; make the tables that short runs lack."""
         with self._database.transaction():
             if not self._has_past:
+                self._made_past = True
                 for statement in PAST:
                     self._database.execute(statement)
             yield

@@ -7,6 +7,7 @@ half without the other one is a single chest.
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from typing import Any, TypeVar
 
 from beliefnest.world.registry import Registry
@@ -25,6 +26,7 @@ _TO_RIGHT = {"north": (1, 0, 0), "east": (0, 0, 1), "south": (-1, 0, 0), "west":
 """Step from a left half to its right half, by the direction that both face."""
 
 
+@cache
 def holds_items(registry: Registry, state: int) -> bool:
     """Return True if a block is a container of its own; no left half is."""
     return registry.is_container(registry.name(state)) and not is_left_half(registry, state)
