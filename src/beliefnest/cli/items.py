@@ -33,6 +33,8 @@ def run_items(options: ItemsOptions) -> int:
         from beliefnest.cli.functional import run_functional
 
         return run_functional(options)
+    if options.model is not None:
+        raise InputError("--model answers and plays with --functional; give both, or none")
     set_options = _set_options(options)
     with progress_on(options.study.stem) as on_progress:
         made = Study.load(options.study).items(**set_options, on_item=on_progress)

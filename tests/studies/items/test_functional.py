@@ -96,6 +96,12 @@ def test_options_of_sets_are_refused(tmp_path, capsys, option):
     assert f"{option} is for sets of items" in capsys.readouterr().err
 
 
+def test_a_model_is_refused_without_episodes(tmp_path, capsys):
+    study = str(EXAMPLES / "study.yaml")
+    assert run_command_line(["items", study, "-o", str(tmp_path), "--model", "offline"]) == 2
+    assert "--model answers and plays with --functional" in capsys.readouterr().err
+
+
 def test_a_study_of_scenarios_is_refused(tmp_path, capsys):
     study = str(EXAMPLES.parent / "benchmark" / "study.yaml")
     assert run_command_line(["items", study, "-o", str(tmp_path), "--functional"]) == 2
