@@ -79,6 +79,39 @@ def test_right_labels_follow_and_wrong_ones_are_found(tmp_path, name):
     assert undetermined == ()
 
 
+OTHER_WORDS = (
+    "When Jackson returns, where will he look for the boots?",
+    "When Jackson comes back to the hall, where will Jackson first look for his boots?",
+    "Where will Jackson look for the boots first when he returns?",
+    "In which container will Jackson look for the boots?",
+    "Which container will Jackson open to find the boots?",
+    "Where is Jackson going to look for the boots?",
+    "Where does Jackson believe the boots to be?",
+    "Does Jackson believe that the boots is in the pantry or in the bathtub?",
+    "From Jackson\u2019s perspective, where is the boots precisely located by the end?",
+    "According to Jackson, where is the boots?",
+)
+
+
+@pytest.mark.parametrize("asked", OTHER_WORDS)
+def test_false_beliefs_are_asked_for_in_many_words(tmp_path, asked):
+    told = STORY.replace("Chloe moved", "Then Chloe moved")
+    questions = [{"question": asked, "true_answer": each} for each in ("bathtub", "pantry")]
+    file = tmp_path / "rows.json"
+    file.write_text(json.dumps([{"scenario": told, "questions": questions}]), encoding="utf-8")
+    done = audit(read_published(file))
+    ((wrong,), items) = (done.wrong, done.items)
+    assert (items, wrong.row, wrong.answer, done.unread) == (2, 2, "bathtub", ())
+
+
+@pytest.mark.parametrize("asked", ["When Jackson returns, what will he say?", "Is he glad?"])
+def test_other_questions_stay_unread(tmp_path, asked):
+    file = tmp_path / "rows.json"
+    file.write_text(json.dumps([{"story": STORY, "question": asked, "answer": "yes"}]), "utf-8")
+    (unread,) = audit(read_published(file)).unread
+    assert "is no question about a story" in unread.faults[0]
+
+
 def test_what_hearers_believe_is_an_assumption(tmp_path, capsys):
     told = (
         "Ann and Bob entered the den. The pear is in the box. Ann left the den. "

@@ -220,6 +220,10 @@ _WORD = (
 
 _NAME = rf"(?=[A-Za-z0-9]){_WORD}(?: {_WORD})*?"
 _NUMBER = re.compile(r"^\d+[.:)]?\s+")
+_THEN = re.compile(
+    r"(?:after that|afterwards?|finally|later|meanwhile|next|now|soon|then),? (?=[A-Z]|the )", re.I
+)
+"""Words that say no more than the order of the sentences."""
 _SPACE = re.compile(r'(?P<text>"[^"]*")|\s+')
 _JOINT = re.compile(_AND)
 _A = r"(?:the|a|an|his|her|their)"
@@ -264,7 +268,7 @@ _FORMS: tuple[tuple[str, type[Any]], ...] = (
     ),
     (
         rf"{_AGENTS} {_ALL}(?:left|leaves|exited|exits|departed|departs|"
-        rf"{_WALK} (?:out|away|off|outside))",
+        rf"{_WALK} (?:out|away|off|outside)(?: for a walk| to play)?)",
         Exited,
     ),
     (
@@ -342,6 +346,8 @@ def _parse(line: str, place: str) -> Sentence:
     # Keep the text of a sign as it is.
     spaced = _SPACE.sub(lambda space: space["text"] or " ", _NUMBER.sub("", line, count=1))
     words = spaced.strip().removesuffix(".")
+    if first := _THEN.match(words):
+        words = words[first.end() :]
     for form, kind in _KINDS:
         match = form.fullmatch(words)
         if match is not None:

@@ -1,7 +1,7 @@
 """Questions about stories."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from beliefnest.errors import InputError
 from beliefnest.world.texts import quoted
@@ -39,19 +39,30 @@ class Question:
 
 
 _AGENT = r"[A-Za-z0-9_]{1,16}"
-_THING = r"(?:the )?(?P<thing>[A-Za-z0-9][\w' -]*?)"
+_THING = r"(?:(?:the|his|her|their) )?(?P<thing>[A-Za-z0-9][\w' -]*?)"
 _THINK = r"(?:really )?(?:thinks?|believes?)(?: that)?"
 _WILL = "(?:will|would|does)"
+_SEEK = (
+    r"(?:first )?(?:(?:look|search)(?: first)? for|expect to find|try to find|go to (?:find|get))"
+)
 _CHAIN = rf"(?P<chain>{_AGENT} {_THINK}(?: {_AGENT} {_THINK})*)"
 _DOOR = r"the door of (?:the )?(?P<door>[A-Za-z0-9][\w' -]*?)"
 _SIGN = r"the sign of (?:the )?(?P<sign>[A-Za-z0-9][\w' -]*?)"
 _BEGINNING = re.compile(rf"Where was {_THING} (?:at|in) the beginning")
 _FORMS = (
-    re.compile(rf"Where is {_THING}(?: really| now)?"),
+    re.compile(rf"Where is (?P<who>{_AGENT}) going to {_SEEK} {_THING}(?: first)?"),
+    re.compile(rf"Where is {_THING}(?: really| now| currently)?(?: located)?"),
     _BEGINNING,
-    re.compile(rf"Where {_WILL} (?P<who>{_AGENT}) (?:look for|search for|expect to find) {_THING}"),
+    re.compile(rf"Where {_WILL} (?P<who>{_AGENT}) {_SEEK} {_THING}(?: first)?"),
+    re.compile(rf"Where does (?P<who>{_AGENT}) (?:believe|expect) {_THING} to be"),
     re.compile(
-        rf"Where does {_CHAIN} (?:{_THING} (?:really )?is|(?P<who>{_AGENT}) "
+        rf"Which \w+ {_WILL} (?P<who>{_AGENT}) (?:first )?(?:open|check|look in|search)(?: first)? "
+        rf"(?:to find|to get|for) {_THING}"
+    ),
+    re.compile(rf"Does {_CHAIN} {_THING} is (?:in|inside) [\w' -]+ or (?:(?:in|inside) )?[\w' -]+"),
+    re.compile(
+        rf"Where does {_CHAIN} (?:{_THING} (?:really |now )?is(?: really| now)?(?: located)?|"
+        rf"(?P<who>{_AGENT}) "
         rf"(?:searches|looks|{_WILL} search|{_WILL} look) for {_THING.replace('thing', 'sought')})"
     ),
     re.compile(rf"Is {_DOOR} (?:really )?open"),
@@ -62,13 +73,42 @@ _FORMS = (
 _BELIEVER = re.compile(rf"({_AGENT}) {_THINK}(?: |$)")
 
 
+_RETURN = r"(?:comes back|gets back|returns|walks back|(?:re-?)?enters|arrives|wakes up)[^,]*"
+_WHEN = re.compile(
+    rf"(?:after|as soon as|once|when) (?P<who>{_AGENT}) {_RETURN}, (?P<asked>.+)", re.I
+)
+"""Clauses of time, which change nothing: until somebody is back, it learns nothing."""
+_THEN = re.compile(
+    rf"(?P<asked>.+?),? (?:(?:after|as soon as|once|when) (?:he|she|they|{_AGENT}) {_RETURN}|"
+    r"(?:at|by) the end(?: of the story)?)",
+    re.I,
+)
+_VIEW = re.compile(
+    rf"(?:(?:from|in) (?P<of>{_AGENT})'s? (?:mind|opinion|perspective|point of view|view)|"
+    rf"according to (?P<to>{_AGENT})), (?P<asked>.+)",
+    re.I,
+)
+_PRONOUN = re.compile(r"\b(?:he|she|they)\b")
+
+
 def parse_question(text: str) -> Question:
     """Parse a question.
 
     Raises:
         InputError: The text is no known question.
     """
-    words = " ".join(text.split()).removesuffix("?").rstrip()
+    words = " ".join(text.replace("\u2019", "'").split()).removesuffix("?").rstrip()
+    words = re.sub(
+        r" precisely\b", "", re.sub(r"^in (?:which|what) \w+\b", "Where", words, flags=re.I)
+    )
+    if match := _WHEN.fullmatch(words):
+        return replace(parse_question(_PRONOUN.sub(match["who"], match["asked"], 1)), text=text)
+    if (match := _THEN.fullmatch(words)) and " beginning" not in words:
+        return replace(parse_question(match["asked"]), text=text)
+    if match := _VIEW.fullmatch(words):
+        inner = parse_question(match["asked"])
+        return replace(inner, believers=(match["of"] or match["to"], *inner.believers), text=text)
+    words = words[:1].upper() + words[1:]
     for form in _FORMS:
         if match := form.fullmatch(words):
             part = match.groupdict("")

@@ -23,9 +23,12 @@ from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
 from beliefnest.world.texts import quoted
 
-_STORY = ("story", "narrative", "plot", "context", "input")
+_STORY = ("story", "narrative", "plot", "context", "passage", "scenario", "input")
 _QUESTION = ("question", "query", "input")
-_ANSWER = ("answer", "target", "label", "gold", "correct", "correct_answer")
+_ANSWER = (
+    *("answer", "target", "label", "gold", "correct", "correct_answer", "right_answer"),
+    *("true_answer", "true answer", "gold_answer", "expected"),
+)
 _OPTIONS = ("choices", "options")
 _LISTS = ("data", "rows", "items", "examples")
 _BARE = ("story", "question", "answer")
@@ -78,7 +81,9 @@ def _rows(path: Path, text: str) -> Iterator[_Row]:
         for value in _json_values(path, text):
             if not isinstance(value, dict):
                 raise InputError(f"{path} has {quoted(value)} in place of a row with names")
-            yield value
+            several = value.get("questions")
+            asked = several if isinstance(several, list) else [{}]
+            yield from ({**value, **each} for each in asked if isinstance(each, dict))
         return
     first = text.partition("\n")[0]
     mark = max(",;\t", key=first.count)
