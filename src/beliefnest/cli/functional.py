@@ -46,7 +46,8 @@ def run_functional(options: ItemsOptions) -> int:
         done = [certified(each, seeds, folder / each.folder, jobs, say) for each in families]
         pairs = [
             paired(each, model, seeds, repeats, folder / each.folder / "model", jobs, say)
-            for each in (families if model else ())
+            for each in families
+            if model is not None
         ]
     content: dict[str, Any] = {"certificates": [each.plain() for each in done]}
     report: list[Printed] = [_certificates(done)]

@@ -328,7 +328,7 @@ class _Watching:
 
 def chance_of(rules: Mapping[str, Tally]) -> Tally:
     """Return the episodes won by the rule that draws among the places."""
-    return next(tally for name, tally in reversed(rules.items()) if CHANCE in name)
+    return next(tally for name, tally in reversed(list(rules.items())) if CHANCE in name)
 
 
 def check_functional(design: object, name: str) -> EpisodeDesign:
