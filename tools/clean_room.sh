@@ -36,7 +36,10 @@ visit() {
       cd "$home" &&
       export NUMBA_CACHE_DIR="$home/kernels" &&
       venv/bin/beliefnest --version &&
-      venv/bin/beliefnest run sally-anne --out run
+      venv/bin/beliefnest run sally-anne --out run &&
+      # The first run compiles its kernels beside, and plays in Python meanwhile: the same results.
+      venv/bin/beliefnest run sally-anne --out again >/dev/null &&
+      diff -r -x '*.bn' -x '*.json' -x '*.jsonl' -x report.html -x summary.txt run again
   } 2>&1); then
     printf '%s\n%s\n' "$("$1" --version)" "$said"
   else

@@ -4,8 +4,6 @@ import importlib
 import io
 import os
 import pickle
-import re
-import subprocess
 import sys
 
 import numba
@@ -34,7 +32,6 @@ def count(row, rounds: int) -> float:
     return row[0]
 """
 LONG = 1000.0
-COMMAND = [sys.executable, "-m", "beliefnest"]
 
 
 @pytest.fixture
@@ -87,16 +84,3 @@ def test_the_compiler_compiles_what_it_is_asked_for(count):
     types = (numba.types.Array(numba.types.float64, 1, "C"), numba.types.int64)
     compile_all(io.BytesIO(pickle.dumps(("counting", "count", types))))
     assert is_compiled(count)
-
-
-@pytest.mark.long
-def test_a_first_run_writes_what_later_ones_do(tmp_path):
-    environment = {**os.environ, "NUMBA_CACHE_DIR": os.fspath(tmp_path / "kept")}
-    told = []
-    for number in ("1", "2"):
-        command = [*COMMAND, "run", "sally-anne", "--world", "scripted", "--out", number]
-        ended = subprocess.run(
-            command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
-        )
-        told.append(re.sub(r"\d+\.\d+ *\n|recorded in .*", "", ended.stdout))
-    assert told[0] == told[1]

@@ -300,6 +300,7 @@ UNKNOWN = (
     "Answer: He does not know.",
 )
 AMBIGUOUS = (
+    "Answer: A. Wait, I am not sure.",
     "Answer: red box or blue box",
     "Answer: A or B",
     "Answer: A and B",

@@ -11,6 +11,7 @@ FUEL = "fuel exhausted: the program computed more than its limit of 250000000 un
 
 ENDLESS = {
     "a loop": "for (;;) {}",
+    "the message of an error": "throw {get message () { for (;;) {} }}",
     "reverse": "[].reverse.call({length: 2 ** 53 - 1})",
     "join": "[].join.call({length: 2 ** 53 - 1})",
     "sort": "[].sort.call({length: 2 ** 53 - 1})",
@@ -18,7 +19,6 @@ ENDLESS = {
     "unshift": "[].unshift.call({length: 2 ** 53 - 3}, 1, 2)",
     "concat": "[].concat({length: 2 ** 53 - 2, [Symbol.isConcatSpreadable]: true})",
     "a regular expression": "/(a+)+$/.test('a'.repeat(60) + 'b')",
-    "the message of an error": "throw {get message () { for (;;) {} }}",
     "the stack of errors": "Object.defineProperty(Error.prototype, 'stack', "
     "{get () { for (;;) {} }}); throw Object.setPrototypeOf({}, Error.prototype)",
     "a proxy of an error": "throw new Proxy(new Error(), {get () { for (;;) {} }})",

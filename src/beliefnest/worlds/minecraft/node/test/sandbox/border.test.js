@@ -34,6 +34,14 @@ describe('the border', () => {
     assert.match(value.message, reason)
   }
 
+  it('names only so many objects', () => {
+    const left = 20_000 - session.exchange.objects.length
+    for (let n = 0; n < left; n++) session.exchange.handle({}, 'block')
+    assert.throws(() => session.exchange.handle({}, 'block'), /20000 game objects, which is the limit/)
+    // One that has a name keeps it.
+    assert.deepEqual(session.exchange.handle(bot, 'bot'), { $: 'h', id: 0, k: 'bot' })
+  })
+
   it('answers what the guest asks', () => {
     assert.deepEqual(ask('get', BOT, 'health'), { ok: true, value: 20 })
   })
