@@ -4,16 +4,12 @@ import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any
 
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Finish
 from beliefnest.llm.reading_answers import ReadingOutcome, ReadOutcome, is_refusal, withheld
 from beliefnest.llm.thinking import separate_thinking
-
-if TYPE_CHECKING:  # tree-sitter is imported only when an answer is read.
-    from tree_sitter import Parser
+from beliefnest.skills.javascript import parsed
 
 PLACEHOLDER = "// the body of an async function"
 """Comment in place of a program in our instructions."""
@@ -247,12 +243,12 @@ def _end_of_block(text: str, start: int, fence: str, language: str) -> tuple[int
 
 def _is_whole(code: str) -> bool:
     """Return True if code is JavaScript without an error, and with an end."""
-    return bool(code.strip()) and not _parsed(code).root_node.has_error
+    return bool(code.strip()) and not parsed(code.encode()).has_error
 
 
 def _has_code(code: str) -> bool:
     """Return True if code has more than comments."""
-    return any(child.type != "comment" for child in _parsed(code).root_node.children)
+    return any(child.type != "comment" for child in parsed(code.encode()).children)
 
 
 def _bare_program(text: str) -> str | None:
@@ -263,15 +259,3 @@ def _bare_program(text: str) -> str | None:
     if _is_placeholder(code) or not _has_code(code):
         return None
     return code
-
-
-def _parsed(code: str) -> Any:
-    return _parser().parse(code.encode())
-
-
-@lru_cache(maxsize=1)
-def _parser() -> "Parser":
-    import tree_sitter_javascript
-    from tree_sitter import Language, Parser
-
-    return Parser(Language(tree_sitter_javascript.language()))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from beliefnest.errors import InputError
+from beliefnest.skills.javascript import parsed
 from beliefnest.world.texts import quoted
 
 _COMPUTED = frozenset(
@@ -60,10 +61,7 @@ def rewritten(program: str, by: Rewriting) -> str:
 
 
 def _tree(source: bytes) -> _Node:
-    import tree_sitter_javascript
-    from tree_sitter import Language, Parser
-
-    root = Parser(Language(tree_sitter_javascript.language())).parse(source).root_node
+    root = parsed(source)
     for node in _nodes(root):
         if node.is_missing or node.type == "ERROR":
             raise _refused(node, "is not valid JavaScript")

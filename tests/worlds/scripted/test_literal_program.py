@@ -22,6 +22,7 @@ LITERAL = [
     "await getItemFromChest(bot, new Vec3(4, 1, 4), {apple: 1})\r\nawait say(bot, 'gone')",
     "await waitTicks(bot, 500)",
     "await waitForChat(bot, 3)",
+    "await say (bot, '\u00e9\u2028') // \U0001f680\r\n// more\nawait say(bot, '', )",
 ]
 OTHERS = [
     "globalThis.leak = 1;",
@@ -44,6 +45,17 @@ OTHERS = [
     "await getItemFromChest(bot, new Vec3(1, 1, 1), {__proto__: 1})",
     "await getItemFromChest(bot, new Vec3(1, 1, 1), {'2': 1, '1': 1})",
     "await say(bot, 'a')\n" * 201,
+    "await say(bot, 'a') await say(bot, 'b')",
+    "await\u200bsay(bot, 'a')",
+    "await say(bot, '\ud800')",
+    "await say(bot, 'a\rb')",
+    "await say?.(bot, 'a')",
+    "await waitTicks(bot, - -1)",
+    "await waitTicks(bot, +1)",
+    "await goToPosition(bot, new Vec3(1, 2))",
+    "await goToPosition(bot, new Box(1, 2, 3))",
+    "await getItemFromChest(bot, new Vec3(1, 1, 1), {})",
+    "<!-- a\nawait say(bot, 'a')",
 ]
 
 

@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from beliefnest.skills.javascript import parsed
 from beliefnest.world.event_words import Announcement
 from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotReads
@@ -21,27 +22,20 @@ _MOST_CALLS = 200
 """Programs with more calls go to the interpreter, where their fuel is counted."""
 _LONGEST = 10_000
 
-# JavaScript's line ends: each ends a comment, and a string literal here contains none.
-_ENDS = r"\n\r\u2028\u2029"
-_GAP = rf"(?:\s|//[^{_ENDS}]*+(?:[{_ENDS}]|\Z))*+"
-_WORD = r"[A-Za-z]\w*+"
-_NUMBER = r"-?(?:0|[1-9]\d{0,14}+)(?:\.\d{1,15}+)?+(?![\w.])"
-_TEXT = rf"""(?:"[^"\\{_ENDS}]*+"|'[^'\\{_ENDS}]*+')"""
-_PLACE = rf"new\s+Vec3\s*\(\s*{_NUMBER}\s*,\s*{_NUMBER}\s*,\s*{_NUMBER}\s*\)"
-_ITEM = rf"(?:{_WORD}|{_TEXT})\s*:\s*{_NUMBER}"
-_ITEMS = rf"\{{\s*{_ITEM}\s*(?:,\s*{_ITEM}\s*)*+\}}"
-_VALUE = rf"(?:{_NUMBER}|{_TEXT}|{_PLACE}|{_ITEMS})"
-_CALL = re.compile(
-    rf"{_GAP}await\s+(?P<name>{_WORD})\s*\(\s*bot\s*(?P<args>(?:,\s*{_VALUE}\s*)*+)\)\s*;?",
-    re.ASCII,
-)
-_END = re.compile(_GAP, re.ASCII)
-_ARGUMENT = re.compile(rf",\s*({_VALUE})\s*", re.ASCII)
-_PART = re.compile(_NUMBER, re.ASCII)
-_COUNTED = re.compile(rf"({_WORD}|{_TEXT})\s*:\s*({_NUMBER})", re.ASCII)
+_ENDS = re.compile("\r\n|[\n\r\u2028\u2029]")
+"""JavaScript's line ends."""
+_FOREIGN = re.compile("[\u200b\u2060\ud800-\udfff]")
+"""Characters that may be white space for the parser, and are none for the interpreter."""
+_NUMBER = re.compile(r"(?!-0(?:\.0*)?$)-?(?:0|[1-9]\d{0,14})(?:\.\d{1,15})?", re.ASCII)
 _KEY = re.compile(r"[A-Za-z][\w ]*", re.ASCII)
+"""Keys that keep their order in JavaScript and mean nothing there."""
 _BOT = {"$": "h", "id": 0}
-_NEGATIVE_ZERO = re.compile(r"-0(?:\.0*)?(?![\d.])")
+_ONE, _TWO, _THREE, _SOME = range(1, 2), range(2, 3), range(3, 4), range(1, 100)
+"""Numbers of parts."""
+
+
+class _OtherProgramError(Exception):
+    """A part of a program is no call of a skill with literal values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,40 +55,75 @@ class LiteralCall:
 
 def literal_calls(code: str, skills: Collection[str]) -> tuple[LiteralCall, ...] | None:
     """Return the calls of a program if it consists of nothing else; None otherwise."""
-    if len(code) > _LONGEST or _NEGATIVE_ZERO.search(code) is not None:
+    if len(code) > _LONGEST or _FOREIGN.search(code) is not None:
         return None
-    calls: list[LiteralCall] = []
-    at = 0
-    while call := _CALL.match(code, at):
-        if call["name"] not in skills or len(calls) >= _MOST_CALLS:
-            return None
-        wires = [_wire(each[1]) for each in _ARGUMENT.finditer(call["args"])]
-        if None in wires:
-            return None
-        calls.append(LiteralCall(call["name"], (_BOT, *wires), call.start("name")))
-        at = call.end()
-    return tuple(calls) if _END.fullmatch(code, at) is not None else None
-
-
-def _wire(text: str) -> Any:
-    """Return a literal as the interpreter would hand it over; None if that is not certain."""
-    if text[0] in "\"'":
-        return text[1:-1]
-    if text[0] == "n":
-        return {
-            "$": "v",
-            "c": [_number(each[0]) for each in _PART.finditer(text.partition("(")[2])],
-        }
-    if text[0] != "{":
-        return _number(text)
-    items = {each[1].strip("\"'"): _number(each[2]) for each in _COUNTED.finditer(text)}
-    # Other names may be in another order in JavaScript, or mean something there.
-    if not all(_KEY.fullmatch(name) for name in items):
+    source = code.encode()
+    root = parsed(source)
+    if root.has_error:
         return None
-    return {"$": "o", "o": [[name, count] for name, count in items.items()]}
+    try:
+        statements = _parts(root, "program", range(_MOST_CALLS + 1))
+        calls = tuple(_call(each, source) for each in statements)
+    except _OtherProgramError:
+        return None
+    return calls if all(call.name in skills for call in calls) else None
 
 
-def _number(text: str) -> int | float:
+def _call(statement: Any, source: bytes) -> LiteralCall:
+    """Return the call of a statement `await NAME(bot, ...)`."""
+    (awaited,) = _parts(statement, "expression_statement", _ONE)
+    (call,) = _parts(awaited, "await_expression", _ONE)
+    name, arguments = _parts(call, "call_expression", _TWO)
+    bot, *others = _parts(arguments, "arguments", _SOME)
+    if bot.text != b"bot":
+        raise _OtherProgramError
+    start = len(source[: name.start_byte].decode())
+    return LiteralCall(name.text.decode(), (_BOT, *map(_wire, others)), start)
+
+
+def _parts(node: Any, kind: str, numbers: range) -> list[Any]:
+    """Return the parts of a node of a kind, without comments."""
+    parts = [each for each in node.named_children if each.type != "comment"]
+    if node.type != kind or len(parts) not in numbers:
+        raise _OtherProgramError
+    return parts
+
+
+def _wire(node: Any) -> Any:
+    """Return a literal as the interpreter would hand it over."""
+    match node.type:
+        case "string":
+            return _string(node)
+        case "new_expression":
+            name, arguments = _parts(node, node.type, _TWO)
+            if name.text == b"Vec3":
+                return {"$": "v", "c": [*map(_number, _parts(arguments, "arguments", _THREE))]}
+        case "object":
+            pairs = [_parts(each, "pair", _TWO) for each in _parts(node, node.type, _SOME)]
+            items = {_key(key): _number(count) for key, count in pairs}
+            return {"$": "o", "o": [[*each] for each in items.items()]}
+    return _number(node)
+
+
+def _key(node: Any) -> str:
+    key = _string(node) if node.type == "string" else node.text.decode()
+    if not _KEY.fullmatch(key):
+        raise _OtherProgramError
+    return key
+
+
+def _string(node: Any) -> str:
+    """Return the content of a string without escapes."""
+    if any(part.type != "string_fragment" for part in node.named_children):
+        raise _OtherProgramError
+    return str(node.text.decode()[1:-1])
+
+
+def _number(node: Any) -> int | float:
+    """Return a decimal number other than -0."""
+    text = node.text.decode()
+    if not _NUMBER.fullmatch(text):
+        raise _OtherProgramError
     return float(text) if "." in text else int(text)
 
 
@@ -175,5 +204,5 @@ class LiteralProgram:
 
     def _place(self) -> tuple[int, int]:
         assert self._under_way is not None
-        before = re.split(rf"\r\n|[{_ENDS}]", self._code[: self._under_way.start])
+        before = _ENDS.split(self._code[: self._under_way.start])
         return len(before), len(before[-1]) + 1
