@@ -23,6 +23,7 @@ ReadOutcome = Literal["read", "ambiguous", "unread", "cut"]
 """Outcome of reading. `read`: there is an answer. `ambiguous`: it names several options. `unread`:
 it names none. `cut`: it was cut off before its end."""
 
+_CONCLUSION = re.compile(r"\W*(?:so|therefore|thus|hence)\b", re.IGNORECASE)
 _REFUSAL = re.compile(
     r"\b(?:i(?: am|'m)? (?:really |very |so )?sorry|sorry|i apologi[sz]e|unfortunately|i regret)\b"
     r"[^\n]{0,80}\b(?:can ?not|can not|unable|not able|will not|do not feel comfortable)\b"
@@ -239,7 +240,7 @@ class _Reader:
                 for other in others:
                     named.yes |= other.yes if other.bare else other.maybe
                 return named
-            if named.yes and _concludes(sentence):
+            if named.yes and _CONCLUSION.match(sentence):
                 whole = named
                 continue
             whole.yes |= named.yes
@@ -287,7 +288,8 @@ class _Reader:
     ) -> _Found:
         """Return what a statement says after the second thoughts that follow it."""
         plain = plain_words(statement.text).strip()
-        again = afterthoughts(plain_words(f"{_tail(statement, text)}"))
+        after_head = f"{text[statement.start : statement.end]}\n{text[statement.end :]}"
+        again = afterthoughts(plain_words(after_head))
         if again is None:
             return chosen, unclear, plain
         sign, rest = again[0], _SIGNS.sub("", again[1])
@@ -368,15 +370,6 @@ class _Reader:
         plain = plain_words(line).strip()
         named = self._names.named(plain)
         return named.bare and named.yes == {option}
-
-
-def _tail(statement: Statement, text: str) -> str:
-    """Return what follows the head of a statement, to the end of the text."""
-    return text[statement.start : statement.end] + "\n" + text[statement.end :]
-
-
-def _concludes(sentence: str) -> bool:
-    return re.match(r"\W*(?:so|therefore|thus|hence)\b", sentence, re.IGNORECASE) is not None
 
 
 def _concluded(sentence: str, names: Names) -> str:

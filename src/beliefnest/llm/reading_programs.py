@@ -122,7 +122,7 @@ def read_program(text: str, finish: Finish = "stop") -> ProgramReading:  # noqa:
     if blocks:
         languages = ", ".join(sorted({each.language or "no language" for each in blocks}))
         return without(f"the answer holds code in {languages} and none in JavaScript: {shown}")
-    if _repeats_prompt(said.text):
+    if PLACEHOLDER in said.text or len(_TASK_LINES.findall(said.text)) > 1:
         return without(f"the answer repeats the prompt: {shown}")
     if is_refusal(said.text):
         return without(f"the model refused: {shown}", refused=True)
@@ -161,10 +161,6 @@ def _of_block(block: _Block, text: str, thinking: str) -> ProgramReading:
 def _is_placeholder(code: str) -> bool:
     lines = [line.strip() for line in code.strip().splitlines()]
     return lines == [PLACEHOLDER]
-
-
-def _repeats_prompt(text: str) -> bool:
-    return PLACEHOLDER in text or len(_TASK_LINES.findall(text)) > 1
 
 
 def _blocks(text: str) -> Iterator[_Block]:

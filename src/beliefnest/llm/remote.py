@@ -406,14 +406,12 @@ def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResp
     counted = response.usage
     tokens = (counted.input_tokens, counted.output_tokens)
     # The library passes on the server's counts without validation.
-    if not any(tokens) or not all(_is_count(each) for each in tokens):
+    if not any(tokens) or not all(
+        isinstance(each, int) and 0 <= each <= _MOST_TOKENS for each in tokens
+    ):
         return _guessed_usage(model, messages, len(response.text or ""))
     cost = model.endpoint.cost(_cost(response))
     return Usage(1, counted.input_tokens, counted.output_tokens, cost)
-
-
-def _is_count(value: object) -> bool:
-    return isinstance(value, int) and 0 <= value <= _MOST_TOKENS
 
 
 def _guessed_usage(model: RemoteModel, messages: Sequence[Message], received: int) -> Usage:

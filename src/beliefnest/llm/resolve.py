@@ -89,7 +89,8 @@ def resolve_model(
     if kind not in _KINDS:
         raise UnknownNameError(f"no model {quoted(name)}{_nearest(kind)}")
     if not rest:
-        raise InputError(f"{quoted(name)} is incomplete; write {kind}:{_placeholder(kind)}")
+        what = "FILE" if kind in ("replay", "scripted") else "MODEL"
+        raise InputError(f"{quoted(name)} is incomplete; write {kind}:{what}")
     if kind == "replay":
         return load_replay(name, Path(rest))
     if kind == "scripted":
@@ -197,10 +198,6 @@ def open_model(name: str, environment: Mapping[str, str], connection: Connection
     if connection.record is not None:
         model = FileRecordingModel(model, connection.record)
     return model
-
-
-def _placeholder(kind: str) -> str:
-    return "FILE" if kind in ("replay", "scripted") else "MODEL"
 
 
 def _nearest(kind: str) -> str:

@@ -146,14 +146,9 @@ def chests(branch: BranchView) -> str:
     lines = [
         f"{text.position(at)}: {text.mapping(state.containers[at].items)}"
         for at in sorted(state.containers)
-        if _is_chest(state, at)
+        if (block := state.blocks[at]) is None or block_name(block) in _CHESTS
     ]
     return "\n".join(lines) or text.NOT_OBSERVED
-
-
-def _is_chest(state: State, at: Position) -> bool:
-    block = state.blocks[at]
-    return block is None or block_name(block) in _CHESTS
 
 
 @filter("other_players")

@@ -62,14 +62,10 @@ class InReach:
 
     def is_met(self, cell: Position) -> bool:
         """Return True if a block is near enough to a cell."""
-        if self.beside and self._is_within(cell):
-            return False
-        middle = (self.block[0] + 0.5, self.block[1] + 0.5, self.block[2] + 0.5)
-        return math.dist(eye_in(cell), middle) <= self.reach
-
-    def _is_within(self, cell: Position) -> bool:
         x, y, z = self.block
-        return cell in ((x, y, z), (x, y - 1, z))
+        if self.beside and cell in ((x, y, z), (x, y - 1, z)):
+            return False
+        return math.dist(eye_in(cell), (x + 0.5, y + 0.5, z + 0.5)) <= self.reach
 
 
 WalkGoal = Near | InReach

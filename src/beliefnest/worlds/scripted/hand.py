@@ -42,10 +42,6 @@ class SkillError(BeliefNestError):
         self.reason = reason
 
 
-def _one_tick() -> int:
-    return 1
-
-
 @dataclass(frozen=True)
 class Hand:
     """Agent that acts in a scripted world.
@@ -76,7 +72,7 @@ class Hand:
     mouth: list[object] = field(default_factory=list)
     uttered: list[int] = field(default_factory=list)
     news: list[Announcement] = field(default_factory=list)
-    stride: Callable[[], int] = _one_tick
+    stride: Callable[[], int] = lambda: 1
 
     def reach(self, place: Position, *, beside: bool = False) -> InReach:
         """Return the goal of standing where the agent reaches a block; `beside` as in `InReach`."""
