@@ -44,7 +44,7 @@ _AXES: Mapping[JudgedPart, tuple[str, str]] = {
 
 
 JudgedFilms = Mapping[Lesion | None, Sequence[FilmRow]]
-"""Rows of the films, by the part that the model lacks."""
+"""Rows of the films, by the part that is taken out of the model; None: the whole model."""
 
 
 def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
@@ -120,7 +120,7 @@ def _key(lesion: Lesion | None) -> str:
 
 
 def _correlations(rows: Sequence[FilmRow], lesion: Lesion | None, seed: int) -> dict[str, Any]:
-    """Return the coefficients of all that people judged, with intervals."""
+    """Return correlations with the judgments of people, with intervals, by what was judged."""
     correlations: dict[str, Any] = {}
     for about in ABOUT:
         pairs = agreement(rows, about)

@@ -81,7 +81,7 @@ class RunCell(Cell):
 
 
 def _readings(nest: Nest) -> dict[str, object]:
-    """Return the number of utterances given to the model for claims, and of those that failed."""
+    """Return how often a model was asked for claims of an utterance, and how often it failed."""
     asked = [each for each in nest.prompts() if "claims_from" in each.detail]
     failed = [each.error for each in asked if each.answer is None]
     return {"asked": len(asked), "failed": len(failed), "first": next(iter(failed), None)}

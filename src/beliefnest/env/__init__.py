@@ -65,15 +65,15 @@ def parallel_env(
             of a skill and each claim, with a mask; or `programs`, JavaScript.
         observations: `arrays` of a fixed layout, or a `dict` of plain data.
         agents: Agents that act; None for all, in tasks for the players.
-        nested: Beliefs about beliefs, which observations, and infos under `beliefs`, hold too:
-            paths such as `/anne/sally`, or the greatest depth of all such paths.
+        nested: Beliefs about beliefs that observations hold too, as do infos under `beliefs`:
+            paths such as `/anne/sally`, or a number for all paths up to this depth.
         phrases: Utterances to choose from; a mapping gives the claims of each.
         items: Names of items that may appear later but that no agent or container has at the
             start.
         cells: Cells that `flat` actions can be about: to go and stand there, to break or place a
             block, to say what is there. Those of blocks and places in goals are among them anyway.
         sizes: Greatest numbers of things of a kind (`agents`, `items`, `containers`, `doors`,
-            `levers`, `buttons`, `signs`), by kind; others are those of the first instances.
+            `levers`, `buttons`, `signs`), by kind; for others, those of the first instances.
         reward: Function of the nest and an agent that returns its reward after a step; None for
             the task's rewards, or 0.
         ends: Function of the nest that returns True if the episode is over; None: only tasks end.
@@ -150,7 +150,7 @@ def vector_env(
 
     Args:
         scenario: As for `parallel_env`.
-        copies: Number of copies; each counts once for each of its agents.
+        copies: Number of copies; each agent of a copy is one environment of the vector.
         processes: Number of processes that step the copies; 1: this one alone. The observations,
             rewards and infos are the same.
         options: Arguments of `parallel_env`.
@@ -170,7 +170,7 @@ def sb3_env(
 
     Args:
         scenario: As for `parallel_env`.
-        copies: Number of copies; each counts once for each of its agents.
+        copies: Number of copies; each agent of a copy is one environment of the vector.
         processes: Number of processes that step the copies.
         options: Arguments of `parallel_env`; `actions` is `flat` if it is left out.
 

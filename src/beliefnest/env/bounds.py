@@ -37,14 +37,14 @@ Phrases = Mapping[str, Sequence[Claim]]
 _MOVED = ("doors", "levers", "buttons")
 _BELOW = "beliefs_"
 _OF_OBSERVER = ("tick", "me")
-"""Arrays that are the same in beliefs below that of an observer."""
+"""Arrays that only the observer's own belief has: they would be equal in beliefs below it."""
 _FARTHEST = 3.0e7
 """Distance of Minecraft's border from the origin, in blocks."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ThingsLayout(Things):
-    """All things of an instance, for its user; agents number those that they know.
+    """All things of an instance. Its user sees them all; each agent numbers those that it knows.
 
     Names are sorted, positions are in order.
 
@@ -67,8 +67,8 @@ class SpaceBounds:
         box: Region of the scenario; `blocks` has its shape.
         most: Greatest number of things of each kind.
         phrases: Texts that can be said and written on signs.
-        nested: Greatest number of beliefs of one agent about beliefs, and of names below its own
-            in their paths.
+        nested: Two greatest numbers: of one agent's beliefs about beliefs, and of names that follow
+            the agent's own in the path of such a belief.
     """
 
     box: Box
@@ -135,8 +135,8 @@ class SpaceBounds:
         return {**own, "beliefs": (self.nested, np.int32, -1, most), **below}
 
     def own_shapes(self) -> Mapping[str, ArrayShape]:
-        """Return the same of the arrays of one belief."""
-        # An array without elements fits few learners: one row of nothing in place of none.
+        """Return shape, type, least and greatest value of each array of one belief."""
+        # Few learners take an array without elements, so that it gets one row of nothing.
         agents, items, containers = (
             max(1, self.most[kind]) for kind in ("agents", "items", "containers")
         )

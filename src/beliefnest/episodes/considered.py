@@ -18,10 +18,10 @@ class TriedCourse(msgspec.Struct, frozen=True):
         program: Program of the course; empty: the agent does nothing.
         outcome: Imagined end.
         score: Numbers by which courses are compared from left to right; less is better. The first
-            is 0 if the goal is reached, 1 if it stays open, 2 if it is violated. Then follow, for
-            `reached`: ticks until then plus 0.5 for each call and 2 for each utterance; for
-            `open`: the remaining distance to the goal and that cost; for `violated`: minus the
-            tick and that cost.
+            is 0 if the goal is reached, 1 if it stays open, 2 if it is violated. The cost of a
+            course is its ticks plus 0.5 for each call and 2 for each utterance. After 0 follows
+            the cost until then; after 1 the remaining distance to the goal and the cost; after 2
+            minus the tick of the violation and the cost.
     """
 
     program: str
@@ -70,7 +70,7 @@ def told_trace(trace: SearchTrace) -> dict[str, Any]:
 
 
 def considered_lines(considered: Mapping[str, Any]) -> Sequence[str]:
-    """Return what `told_trace` returned in lines: the reckoned acts of others, the best courses."""
+    """Return a result of `told_trace` as lines: expected acts of others, then the best courses."""
     lines = [
         f"expects that {name} does: {_flat(program) or 'nothing'}"
         for name, program in considered["others"].items()

@@ -63,8 +63,8 @@ class Terms:
         """Return the model that a cell asks.
 
         Raises:
-            BeliefNestError: There is none, or the limits are reached: its script is not played
-                in vain.
+            BeliefNestError: There is no such model, or the limits are reached. The caller asks
+                for the model first, so that no script is played in vain.
         """
         if name not in self.models and can_vary(name):
             budget = self.connection().budget

@@ -42,8 +42,8 @@ def check_written(document: Document) -> ScenarioFile | WrittenFile:
     Raises:
         ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
     """
-    form: Any = WrittenFile if "map" in document.root.value else ScenarioFile
-    return _checked(document, form)
+    is_drawn = "map" in document.root.value
+    return _checked(document, WrittenFile) if is_drawn else check_form(document)
 
 
 def check_rules_form(rules: Mapping[str, object]) -> None:

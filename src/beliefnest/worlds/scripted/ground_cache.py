@@ -16,7 +16,7 @@ _Value = TypeVar("_Value")
 class Grounds:
     """Cache of the grounds of the latest terrains.
 
-    Bodies with the same terrain share an entry. So do those with equal ones, if the box is small.
+    Bodies with the same terrain share an entry. In a small box, those with equal terrains do, too.
     """
 
     def __init__(self) -> None:
