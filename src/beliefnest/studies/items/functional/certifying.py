@@ -5,14 +5,14 @@ Instances that differ in one parameter and look the same to an agent of one orde
 most those in which one and the same course wins.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
-from beliefnest.episodes.agent_view import GO_ON, AgentView
+from beliefnest.episodes.agent_view import GO_ON, AgentView, Policy
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 from beliefnest.episodes.policies.search import Search
@@ -243,15 +243,13 @@ def best_course(siblings: Sequence[Task], order: int) -> int:
     """
     lists = [_Listing(order) for _ in siblings]
     for task, listing in zip(siblings, lists, strict=True):
-        _play(task, lambda listing=listing: listing)
+        _play(task, listing)
     programs = dict.fromkeys(("", *lists[0].programs, *(each.found for each in lists)))
-    return max(
-        sum(_play(task, partial(_Course, program)) for task in siblings) for program in programs
-    )
+    return max(sum(_play(task, _Course(program)) for task in siblings) for program in programs)
 
 
-def _play(task: Task, policy: Callable[[], Any]) -> bool:
-    with Episode(task, {name: policy() for name in task.players}) as episode:
+def _play(task: Task, policy: Policy) -> bool:
+    with Episode(task, dict.fromkeys(task.players, policy)) as episode:
         return episode.play().success
 
 
