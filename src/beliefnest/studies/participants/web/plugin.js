@@ -249,8 +249,8 @@
       form.root.hidden = true
       const heading = element('h1', {}, trial.owner ? `You are ${trial.owner}.` : 'You are told everything that happened.')
       const story = trial.story.map(text => element('p', {}, text))
-      const told = story.length ? [element('div', { className: 'bn-story' }, ...story)] : []
-      const root = element('section', { className: 'bn-trial', tabIndex: -1 }, heading, ...told, ...(player ? [player.root] : []), form.root)
+      const scenes = story.length ? [element('div', { className: 'bn-story' }, ...story)] : []
+      const root = element('section', { className: 'bn-trial', tabIndex: -1 }, heading, ...scenes, ...(player ? [player.root] : []), form.root)
       display.replaceChildren(root)
       root.focus()
       if (!player || trial.seen) ask(false)

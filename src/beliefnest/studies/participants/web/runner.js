@@ -139,23 +139,23 @@
 
   /**
    * Show the end, with the data.
-   * @param {string} told Sentence about the data.
+   * @param {string} sentence Sentence about the data.
    */
-  function end (told) {
+  function end (sentence) {
     const controls = element('div', { className: 'bn-controls' }, ...savers())
-    show(element('h1', {}, 'Thank you.'), ...study.ending.map(block), element('p', { role: 'status' }, told), controls)
+    show(element('h1', {}, 'Thank you.'), ...study.ending.map(block), element('p', { role: 'status' }, sentence), controls)
     root.dataset.ended = 'yes'
   }
 
   /** Ask the participant to send again or to save the answers. The study's own ending follows only then. */
   function ask () {
-    const told = 'Your answers could not be sent. Please save them as a file and give it to the people who asked you, or try again.'
+    const sentence = 'Your answers could not be sent. Please save them as a file and give it to the people who asked you, or try again.'
     const again = element('button', { type: 'button', className: 'bn-button' }, 'Try again')
     again.addEventListener('click', () => conclude())
     const ending = element('div', { hidden: true }, element('h1', {}, 'Thank you.'), ...study.ending.map(block))
     const files = savers()
     for (const file of files) file.addEventListener('click', () => { ending.hidden = false })
-    show(element('p', { role: 'status' }, told), element('div', { className: 'bn-controls' }, again, ...files), ending)
+    show(element('p', { role: 'status' }, sentence), element('div', { className: 'bn-controls' }, again, ...files), ending)
     root.dataset.ended = 'yes'
   }
 
@@ -205,14 +205,14 @@
    * @returns {object} The session.
    */
   function sessionHere () {
-    const found = sessionOf(study)
-    const { participant } = found.properties
-    if (!participant.startsWith('drawn-')) return found
+    const session = sessionOf(study)
+    const { participant } = session.properties
+    if (!participant.startsWith('drawn-')) return session
     const key = `beliefnest ${location.pathname} ${study.study} drawn`
     const before = recall(sessionStorage, key)
     if (before === null) {
       remember(sessionStorage, key, participant)
-      return found
+      return session
     }
     const query = new URLSearchParams(location.search)
     query.set('participant', before)

@@ -62,8 +62,8 @@
    * @returns {string} The id.
    */
   function participantOf (query) {
-    const given = ID_NAMES.map(name => query.get(name)?.trim()).find(Boolean)
-    if (given) return given
+    const id = ID_NAMES.map(name => query.get(name)?.trim()).find(Boolean)
+    if (id) return id
     const drawn = crypto.getRandomValues(new Uint8Array(8))
     return `drawn-${[...drawn].map(byte => byte.toString(16).padStart(2, '0')).join('')}`
   }
