@@ -162,11 +162,11 @@ def progress_on(title: str) -> "Iterator[OnProgress]":
     if plain:
         console.width = _width(terminal=False) or _PLAIN_WIDTH
 
-        parts: set[int] = set()
+        parts: set[tuple[int, int]] = set()
 
         def say(what: str, done: int, total: int) -> None:
             # A total of 0 means that steps are not counted.
-            part = _LINES * done // total if total else -1
+            part = total, _LINES * done // total if total else -1
             if part in parts and total > _LINES:
                 return
             parts.add(part)
