@@ -84,7 +84,9 @@ def test_run_writes_a_folder_and_prints_the_report(
     assert probe["opened"] == [[-2, -51, -4]]
     assert probe["ok"] is True
     folder = tmp_path / run["run_dir"]
-    assert json.loads((folder / "result.json").read_text()) == run
+    (cell,) = Path("r/cells").iterdir()
+    result = json.loads(cell.read_text())
+    assert {**run, "key": result["key"], "error": None, "run": "condition-3/run.bn"} == result
     assert json.loads(Path("r/run.json").read_text()) == report
     assert probe["program"] == (folder / "probe-1" / "program.js").read_text()
     assert "Get a diamond" in (folder / "probe-1" / "prompt.txt").read_text()

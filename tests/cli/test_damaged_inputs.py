@@ -117,8 +117,8 @@ CASES: dict[str, tuple[str, list[str]]] = {
         ["study", "study.yaml", "--jobs", "1", "--out", "merged", "--merge", "st"],
     ),
     "replayed study": ("st/runs/*.bn", ["replay", "st"]),
-    "report": ("run/run.json", [*RUN, "--out", "run"]),
-    "result": ("run/condition-3/result.json", [*RUN, "--out", "run"]),
+    "plan of a run": ("run/study.json", [*RUN, "--out", "run"]),
+    "result": ("run/cells/*.json", [*RUN, "--out", "run"]),
     "kept scenario": ("run/scenario.yaml", [*RUN, "--out", "run"]),
     "show": ("run/condition-3/run.bn", ["show", "run"]),
     "page": ("run/condition-3/run.bn", ["show", "run", "--html", "page.html"]),
@@ -216,7 +216,7 @@ def _changed(value: Any, dice: random.Random) -> Any:
 
 
 @pytest.mark.parametrize(
-    "case", ["cell", "plan", "episode cell", "episode plan", "report", "result", "seconds"]
+    "case", ["cell", "plan", "episode cell", "episode plan", "plan of a run", "result", "seconds"]
 )
 def test_files_of_a_slightly_other_form_are_read_or_refused(
     made: Path,
@@ -232,9 +232,9 @@ def test_files_of_a_slightly_other_form_are_read_or_refused(
     monkeypatch.chdir(folder)
     path = next(iter(sorted(Path().glob(pattern))))
     if case == "result":
-        report = json.loads(Path("run/run.json").read_text())
-        Path("run/run.json").write_text(json.dumps({**report, "status": "running"}))
-    sound, report = path.read_text(), Path("run/run.json").read_text()
+        plan = json.loads(Path("run/study.json").read_text())
+        Path("run/study.json").write_text(json.dumps({**plan, "status": "running"}))
+    sound, plan = path.read_text(), Path("run/study.json").read_text()
     for _ in range(200 if NIGHTLY else 4):
         changed = json.dumps(
             _changed(json.loads(sound.splitlines()[0] if case == "seconds" else sound), dice)
@@ -242,7 +242,7 @@ def test_files_of_a_slightly_other_form_are_read_or_refused(
         path.write_text(changed + "\n")
         told_in_one_line(command, capfd, may_pass=True)
         path.write_text(sound)
-        Path("run/run.json").write_text(report)
+        Path("run/study.json").write_text(plan)
 
 
 @pytest.mark.parametrize("case", ["cell", "episode cell"])

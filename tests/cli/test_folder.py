@@ -151,29 +151,29 @@ def test_the_folder_of_an_earlier_version_is_refused(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     shutil.copytree(kept[0], "failed")
-    report = json.loads(Path("failed/run.json").read_text(encoding="utf-8"))
-    del report["form"]
-    Path("failed/run.json").write_text(json.dumps(report), encoding="utf-8")
+    # Results were in the folders of conditions.
+    shutil.rmtree("failed/cells")
+    Path("failed/study.json").unlink()
     Path("x.yaml").write_text(ROOM.replace("../texts/short.txt", "default"), encoding="utf-8")
     name, *others = command
     folder = ["--out", "failed"] if name == "run" else ["failed"]
     assert run_command_line([name, *others, *folder]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "run.json was written by another version of beliefnest" in line
-    assert "in a new folder" in line
+    assert "failed holds a run of an earlier version; run it again in a new folder" in line
 
 
-def test_a_report_whose_result_lacks_a_key_is_refused(
+def test_a_run_whose_result_lacks_a_key_is_refused(
     kept: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = tmp_path / "done"
     shutil.copytree(kept[1], folder)
-    report = json.loads((folder / "run.json").read_text(encoding="utf-8"))
-    del report["runs"][0]["condition"]
-    (folder / "run.json").write_text(json.dumps(report), encoding="utf-8")
+    (cell,) = (folder / "cells").iterdir()
+    result = json.loads(cell.read_text(encoding="utf-8"))
+    del result["condition"]
+    cell.write_text(json.dumps(result), encoding="utf-8")
     assert run_command_line(["methods", str(folder)]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "run.json is damaged" in line
+    assert f"{cell.name} is damaged" in line
     assert "'condition'" in line
 
 

@@ -231,12 +231,12 @@ def comparable(out: str) -> dict[str, bytes]:
     found = {}
     for file in sorted(Path(out).rglob("probe-*/*")):
         found[str(file.relative_to(out))] = file.read_bytes()
-    for file in sorted(Path(out).rglob("result.json")):
+    for file in sorted(Path(out, "cells").iterdir()):
         result = json.loads(file.read_text(encoding="utf-8"))
-        result.pop("seconds")
+        del result["seconds"], result["key"]
         for each in (result, *result["probes"]):
             each.pop("run_dir")
-        found[str(file.relative_to(out))] = json.dumps(result).encode()
+        found[result["run"]] = json.dumps(result).encode()
     for file in sorted(Path(out).rglob("run.bn")):
         with Journal.read(file) as journal:
             for info in journal.timelines():

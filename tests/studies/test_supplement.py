@@ -141,8 +141,8 @@ def test_what_is_no_study_or_supplement_is_told(tmp_path, capsys):
     small = small_in(tmp_path)
     out = tmp_path / "run"
     assert run_command_line(["run", small, "--world", "scripted", "--out", str(out)]) == 0
-    assert run_command_line(["stats", str(out)]) == 2
-    assert "it holds a run of `beliefnest run`; give a folder of" in capsys.readouterr().err
+    assert run_command_line(["stats", str(tmp_path)]) == 2
+    assert "there is no study at" in capsys.readouterr().err
     assert run_command_line(["reproduce", str(tmp_path / "nothing.zip")]) == 2
     told = capsys.readouterr().err
     assert "there is no file" in told
@@ -159,11 +159,13 @@ def test_a_run_is_bundled_and_played_again(tmp_path, capsys):
     Path(small).unlink()
     (tmp_path / "answers.json").unlink()
     capsys.readouterr()
+    assert run_command_line(["stats", str(tmp_path / "r"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["summary"][0]["right"] == 1
     assert run_command_line(["reproduce", str(tmp_path / "r.zip"), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["rows"] == 1
     damage(tmp_path / "r", "model.jsonl", "Vec3(1, 1, 1)", "Vec3(1, 1, 2)")
     assert run_command_line(["reproduce", str(tmp_path / "r")]) == 1
-    assert "run.json, runs.0: ok is True, now False" in capsys.readouterr().out
+    assert re.search(r"cells/\w+.json: ok is True, now False", capsys.readouterr().out)
 
 
 def test_episodes_with_a_program_of_a_file_are_played_again(tmp_path):

@@ -2,30 +2,31 @@
 
 import json
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain, count
 from pathlib import Path
-from typing import Any
 
 from beliefnest.cli.report import report_json
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text, replace_file
 from beliefnest.locking import holding, is_lock
 from beliefnest.nest.past.versions import own_versions
+from beliefnest.plan.cells import Keyed
 from beliefnest.scenarios.outcome import ProbeOutcome
-from beliefnest.scenarios.record_forms import checked_form, read_json
+from beliefnest.scenarios.record_forms import read_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.yaml_reading import templates_file
-from beliefnest.studies.run_result import REPORT, ResultForm, read_report
+from beliefnest.studies.kinds import RUN_KIND
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.timeline.lock import writer_lock
 
 STORE = "run.bn"
 PICTURE = "picture.png"
 PAGE = "report.html"
-_RESULT = "result.json"
+_REPORT = "run.json"
 _SCENARIO = "scenario.yaml"
 _ANSWERS = "answers"
 _MOST_NAMED = 10
@@ -53,15 +54,6 @@ class ConditionFolder:
         """SVG file of the same picture, for the report."""
         return self.path / "picture.svg"
 
-    def result(self) -> dict[str, Any] | None:
-        """Return the result from an earlier part of the run; None: the condition has not ended."""
-        file = self.path / _RESULT
-        if not file.is_file():
-            return None
-        content = read_json(file, _OTHER)
-        checked_form(content, ResultForm, file, _OTHER)
-        return content
-
     def begin(self) -> None:
         """Make an empty folder; delete what an interrupted run left in it.
 
@@ -76,10 +68,6 @@ class ConditionFolder:
             finally:
                 lock.release()
         self.path.mkdir(parents=True)
-
-    def write_result(self, result: Mapping[str, object]) -> None:
-        """Write the result of the condition."""
-        replace_file(self.path / _RESULT, _json(result))
 
     def write_probe(self, number: int, outcome: ProbeOutcome) -> None:
         """Write the prompts and answers of a probe, and the program in the answer."""
@@ -96,69 +84,88 @@ class ConditionFolder:
 
 @dataclass(frozen=True, slots=True)
 class RunFolder:
-    """Folder of a run."""
+    """Folder of a run: that of its results, with pictures, report and page."""
 
     path: Path
 
     @staticmethod
     @contextmanager
-    def open(
-        wanted: Path | None, now: datetime, settings: Mapping[str, object], scenario: Scenario
-    ) -> Iterator["RunFolder"]:
+    def open(wanted: Path | None, now: datetime, name: str) -> Iterator["RunFolder"]:
         """Make the folder of a run, or open that of an interrupted run, and hold it meanwhile.
 
         Args:
             wanted: The folder; None: `runs/NAME-DATE-TIME` in the current folder.
             now: Time for the name.
-            settings: Settings of the run; an interrupted run continues only with the same ones.
-            scenario: Scenario of the run. Its file and the templates it names are copied into the
-                folder; an interrupted run continues only if they have not changed.
+            name: Name of the scenario.
 
         Raises:
-            InputError: The folder cannot be made, is in use, or holds something else.
+            InputError: The folder cannot be made, or is in use.
         """
         try:
             if wanted is None:
-                path = _made(Path("runs"), f"{scenario.name}-{now:%Y%m%d-%H%M%S}")
+                path = _made(Path("runs"), f"{name}-{now:%Y%m%d-%H%M%S}")
             else:
                 path = wanted
                 path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise _unwritable(wanted or Path("runs"), error) from None
         with holding(path):
-            folder = RunFolder(path)
-            try:
-                folder._begin(settings, scenario)
-            except OSError as error:
-                raise _unwritable(path, error) from None
-            yield folder
+            yield RunFolder(path)
 
-    def _begin(self, settings: Mapping[str, object], scenario: Scenario) -> None:
-        """Write what a new folder begins with, or check that an older one may be continued."""
-        # A run that repeats another one may begin with a folder of cached answers alone.
-        if any(each.name != _ANSWERS and not is_lock(each) for each in self.path.iterdir()):
-            _check_same(self.path, settings, scenario)
-            return
-        report = report_json(scenario.name, settings, "running", [], [])
-        self.write_report({**report, "versions": own_versions()})
-        replace_file(self.path / _SCENARIO, scenario.text)
-        if scenario.templates:
-            replace_file(templates_file(self.path / _SCENARIO), _json(scenario.templates))
+    def begin(
+        self, settings: Mapping[str, object], scenario: Scenario, cells: Sequence[Keyed]
+    ) -> None:
+        """Write what a new folder begins with, or check that an older one may be continued.
+
+        Args:
+            settings: Settings of the run; an interrupted run continues only with the same ones.
+            scenario: Scenario of the run. Its file and the templates it names are copied into the
+                folder; an interrupted run continues only if they have not changed.
+            cells: Cells of the run.
+
+        Raises:
+            InputError: The folder cannot be written, or holds something else.
+        """
+        try:
+            # A run that repeats another one may begin with a folder of cached answers alone.
+            if any(each.name != _ANSWERS and not is_lock(each) for each in self.path.iterdir()):
+                _check_same(self.path, settings, scenario)
+                return
+            self.results.cells.mkdir()
+            self.write_plan(settings, scenario.name, cells, "running", own_versions())
+            report = report_json(scenario.name, settings, "running", [], [])
+            self.write_report({**report, "versions": own_versions()})
+            replace_file(self.path / _SCENARIO, scenario.text)
+            if scenario.templates:
+                replace_file(templates_file(self.path / _SCENARIO), _json(scenario.templates))
+        except OSError as error:
+            raise _unwritable(self.path, error) from None
+
+    def write_plan(
+        self,
+        settings: Mapping[str, object],
+        scenario: str,
+        cells: Sequence[Keyed],
+        status: str,
+        versions: Mapping[str, str],
+    ) -> None:
+        """Write the plan of the run, with its status and the versions of programs."""
+        plan = {
+            **settings,
+            "status": status,
+            "repeats": settings["repeat"],
+            "scenarios": [scenario],
+            "variations": {},
+            "versions": dict(versions),
+            "cells": [cell.plain() for cell in cells],
+            "invalid": [],
+        }
+        self.results.write_plan(plan)
 
     @property
-    def ledger(self) -> Path:
-        """File with the usage of each answer, one line each."""
-        return self.path / "spent.jsonl"
-
-    @property
-    def answers(self) -> Path:
-        """Folder of the cached answers of models."""
-        return self.path / _ANSWERS
-
-    @property
-    def exchanges(self) -> Path:
-        """File with all prompts and answers of models."""
-        return self.path / "model.jsonl"
+    def results(self) -> StudyFolder:
+        """Plan and results of the cells, as those of a study."""
+        return StudyFolder(self.path, RUN_KIND)
 
     @property
     def picture(self) -> Path:
@@ -167,7 +174,7 @@ class RunFolder:
 
     def write_report(self, report: Mapping[str, object]) -> None:
         """Replace the report."""
-        replace_file(self.path / REPORT, _json(report))
+        replace_file(self.path / _REPORT, _json(report))
 
     def write_page(self, text: str) -> None:
         """Write the HTML page of the run."""
@@ -224,7 +231,7 @@ def _below(folder: Path) -> tuple[Path, ...]:
 
 
 def _no_store(run: Path) -> InputError:
-    if (run / "cells").is_dir():
+    if (run / "cells").is_dir() and not (run / _REPORT).is_file():
         return InputError(
             f"{run} holds a study whose runs were not recorded; run it again with --record in a "
             f"new folder, to which you copy {run / _ANSWERS} so that no model is asked again"
@@ -269,15 +276,18 @@ def _unwritable(path: Path, error: OSError) -> InputError:
 
 def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) -> None:
     """Raise InputError if a folder holds another run, or a run that has ended."""
-    if not (path / REPORT).is_file():
+    if not any((path / name).exists() for name in ("cells", _REPORT)):
         raise InputError(f"{path} is not empty; name another folder with --out")
-    report = read_report(path)
-    if report["status"] == "done":
+    results = StudyFolder.existing(path)
+    if results.kind is not RUN_KIND:
+        raise InputError(f"{path} holds a study; name another folder with --out")
+    plan = results.plan()
+    if plan["status"] == "done":
         raise InputError(f"{path} holds a run that has ended; name another folder with --out")
     kept, templates = path / _SCENARIO, templates_file(path / _SCENARIO)
     # Compare settings as JSON has them, in which a tuple is a list.
     asked = json.loads(json.dumps(settings))
-    recorded = report["settings"]
+    recorded = plan["cells"][0]["key"]["setting"]
     differing = [key for key in {**recorded, **asked} if recorded.get(key) != asked.get(key)]
     if not kept.is_file() or kept.read_text(encoding="utf-8") != scenario.text:
         differing.append("scenario")

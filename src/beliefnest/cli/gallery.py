@@ -1,12 +1,15 @@
 """Pictures of the cells of a run, each drawn in a thread while the next cell is played."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from beliefnest.cli.folder import ConditionFolder
 from beliefnest.files import replace_file
 from beliefnest.pictures.overview import ConditionPicture, overview
+from beliefnest.studies.study_folder import StudyFolder
 
 
 class Gallery:
@@ -21,17 +24,26 @@ class Gallery:
         self._thread = ThreadPoolExecutor(1)
         self._last: Future[None] | None = None
 
-    def add(
-        self, picture: ConditionPicture, place: ConditionFolder, result: Mapping[str, Any]
-    ) -> None:
-        """Begin to draw the picture of a cell; its result is written when the picture is there.
+    def add(self, picture: ConditionPicture, place: ConditionFolder) -> None:
+        """Begin to draw the picture of a cell.
 
         Raises:
             InputError: The picture before it could not be written.
         """
         self._wait()
         self.pictures.append(picture)
-        self._last = self._thread.submit(_draw, picture, place, result)
+        self.then(partial(_draw, picture, place))
+
+    def then(self, write: Callable[[], None]) -> None:
+        """Write something when the last picture is there; nothing if it cannot be drawn."""
+        last = self._last
+
+        def after() -> None:
+            if last is not None:
+                last.result()
+            write()
+
+        self._last = self._thread.submit(after)
 
     def close(self) -> None:
         """Wait for the last picture, and raise its error."""
@@ -43,9 +55,22 @@ class Gallery:
             self._last.result()
 
 
-def _draw(picture: ConditionPicture, place: ConditionFolder, result: Mapping[str, Any]) -> None:
+@dataclass(frozen=True, slots=True)
+class RunResults(StudyFolder):
+    """Results of a run. A cell with a result is not played again, so that its picture is first.
+
+    Attributes:
+        gallery: Pictures of the run.
+    """
+
+    gallery: Gallery
+
+    def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
+        """Write the file of a cell when its picture is there."""
+        self.gallery.then(partial(StudyFolder.write_cell, self, name, content))
+
+
+def _draw(picture: ConditionPicture, place: ConditionFolder) -> None:
     figure = overview([picture], picture.title)
     figure.save(place.picture)
     replace_file(place.picture_svg, figure._repr_html_())
-    # A cell with a result is not played again.
-    place.write_result(result)

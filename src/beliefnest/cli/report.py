@@ -25,7 +25,6 @@ from beliefnest.scenarios.naming import container_name
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.run_result import FORM
 from beliefnest.world.values import Placements, Point, Position
 from beliefnest.world.words import point_text
 
@@ -83,7 +82,7 @@ def report_json(
     models = settings["models"]
     assert isinstance(models, Sequence)
     return {
-        "form": FORM,
+        "form": "beliefnest run 2",
         "scenario": scenario,
         "world": settings["world"],
         "model": ",".join(models),

@@ -9,14 +9,13 @@ from contextlib import closing, suppress
 from dataclasses import replace
 from datetime import datetime
 from functools import partial
-from pathlib import Path
 from typing import Any, Literal
 
 from rich.text import Text
 
 from beliefnest.cli.console import Printed, report_text, stdout
 from beliefnest.cli.folder import RunFolder, kept_scenario_file
-from beliefnest.cli.gallery import Gallery
+from beliefnest.cli.gallery import Gallery, RunResults
 from beliefnest.cli.kernels_ahead import kernels_ahead
 from beliefnest.cli.matrix import score_runs, score_table
 from beliefnest.cli.options import RunOptions
@@ -36,6 +35,8 @@ from beliefnest.plan.terms import Terms
 from beliefnest.plan.worker import Worker
 from beliefnest.scenarios.judging import without_result_words
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.kinds import RUN_KIND
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import lost
 from beliefnest.timeline.store import Journal
 from beliefnest.world.seeds import checked_seed
@@ -47,7 +48,11 @@ _MOST_TIMES = 10_000
 _HOTTEST = 10.0
 """Greatest temperature; more than any provider accepts."""
 
+_OF_CELL = ("key", "error", "run")
+"""Keys of a cell's file that are not in the report."""
+
 RunStatus = Literal["running", "done", "failed", "interrupted"]
+_Ended = tuple[RunCell, dict[str, Any]]
 
 
 def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
@@ -68,7 +73,7 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
     check_world(options.full_world)
     check_visits(options.embody or (), options.full_world)
     _check_numbers(options)
-    kept = None if options.out is None else RunFolder(options.out).answers
+    kept = None if options.out is None else RunFolder(options.out).results.answers
     connection = Connection(
         answer_limits=options.model_settings.answer_limits,
         cache=options.answers or kept,
@@ -76,13 +81,7 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
     )
     for name in options.asked_models:
         check_model(name, os.environ, connection)
-    first = scenarios[0]
-    settings = options.settings
-    # Each condition may name its own template.
-    whole = replace(
-        first, templates={n: t for each in scenarios for n, t in each.templates.items()}
-    )
-    with RunFolder.open(options.out, datetime.now(), settings, whole) as folder:
+    with RunFolder.open(options.out, datetime.now(), scenarios[0].name) as folder:
         return _run_in(folder, options, scenarios, launch)
 
 
@@ -92,93 +91,89 @@ def _run_in(
     """Run the conditions in an open folder; return the exit status."""
     first, settings = scenarios[0], options.settings
     gallery = Gallery()
-    cells = plan_run_cells(scenarios, settings, folder, options.embody or (), gallery)
-    run = _Run(options, folder, cells)
+    cells = plan_run_cells(scenarios, settings, folder.path, options.embody or (), gallery)
+    # Each condition may name its own template.
+    templates = {n: t for each in scenarios for n, t in each.templates.items()}
+    folder.begin(settings, replace(first, templates=templates), cells)
+    results = RunResults(folder.path, RUN_KIND, gallery)
+    terms = _terms(options, results)
     status: RunStatus = "failed"
     worker = partial(Worker, launch=launch, seed=options.seed, caught=ModelError)
     try:
         with noted_warnings() as warned, kernels_ahead(), closing(gallery):
             # It is told with the other failures.
             with suppress(UnavailableModelError):
-                run_cells(cells, run, run.terms, 1, "loky", lambda progress: None, ahead, worker)
+                run_cells(cells, results, terms, 1, "loky", lambda progress: None, ahead, worker)
             if len(gallery.pictures) == len(cells) > 1:
                 shown = gallery.pictures[: len(scenarios)]
                 overview(shown, first.description or first.name).save(folder.picture)
-        status = "failed" if run.failures else "done"
+        status = "failed" if _failures(cells, results) else "done"
     except KeyboardInterrupt:
         status = "interrupted"
         raise
     finally:
-        ended = run.ended()
-        results = [result for _, result in ended]
-        report = report_json(first.name, settings, status, results, run.failures)
+        ended, failures = _ended(cells, results), _failures(cells, results)
+        runs = [result for _, result in ended]
+        report = report_json(first.name, settings, status, runs, failures)
         versions = _versions(cells)
-        report |= {"versions": versions, "scores": score_runs(results, run.failures)}
+        report |= {"versions": versions, "scores": score_runs(runs, failures)}
+        folder.write_plan(settings, first.name, cells, status, versions)
         folder.write_report(report)
         about = {"name": options.scenario, "description": first.description}
         page = report_html(report, about=about, conditions=first.conditions, versions=versions)
         folder.write_page(page)
-    text = report_text(_parts(run, cells, ended, warned))
+    text = report_text(
+        _parts(report, cells, ended, [*warned.values(), f"recorded in {folder.path}"])
+    )
     folder.write_summary(text)
     sys.stdout.write(json.dumps(report, indent=2) + "\n" if options.json else text)
-    if run.failures:
-        missing = len(cells) - len(results)
-        raise ModelError(_failures_text(run.failures, missing, len(cells), folder))
-    return 0 if all(result["ok"] for result in results) else 1
+    if failures:
+        missing = len(cells) - len(runs)
+        raise ModelError(_failures_text(failures, missing, len(cells), folder))
+    return 0 if all(result["ok"] for result in runs) else 1
 
 
-class _Run:
-    """A run in progress as a folder of cells: each has its own folder, and failures have none."""
+def _terms(options: RunOptions, results: StudyFolder) -> Terms:
+    """Return the terms of a run whose answers and usage its folder keeps."""
+    terms = Terms(
+        answers=options.answers or results.answers,
+        ledger=results.ledger,
+        runs=None,
+        limits=RunLimits(options.max_tokens, options.max_cost),
+        cache_mode=options.cache,
+        record=results.requests,
+    )
+    connection = terms.connection(options.model_settings.answer_limits)
+    # Answers of a file go on from cell to cell.
+    models = {name: open_model(name, os.environ, connection) for name in options.asked_models}
+    return replace(terms, models=models)
 
-    def __init__(self, options: RunOptions, folder: RunFolder, cells: Sequence[RunCell]) -> None:
-        self.folder = folder
-        self._cells = {cell.key.name: cell for cell in cells}
-        terms = Terms(
-            answers=options.answers or folder.answers,
-            ledger=folder.ledger,
-            runs=None,
-            limits=RunLimits(options.max_tokens, options.max_cost),
-            cache_mode=options.cache,
-            record=folder.exchanges,
-        )
-        connection = terms.connection(options.model_settings.answer_limits)
-        # Answers of a file go on from cell to cell.
-        models = {name: open_model(name, os.environ, connection) for name in options.asked_models}
-        self.terms = replace(terms, models=models)
-        self.failures: list[dict[str, object]] = []
 
-    @property
-    def ledger(self) -> Path:
-        """File with the usage of each answer."""
-        return self.folder.ledger
+def _ended(cells: Sequence[RunCell], results: StudyFolder) -> list[_Ended]:
+    """Return the cells that have a result, also of an earlier part of the run, each with it."""
+    contents = ((cell, results.cell(cell.key.name)) for cell in cells)
+    return [
+        (cell, {name: value for name, value in content.items() if name not in _OF_CELL})
+        for cell, content in contents
+        if content is not None and content["error"] is None
+    ]
 
-    def cell(self, name: str) -> dict[str, Any] | None:
-        """Return the result of a cell, also of an earlier part of the run; None: it has none."""
-        result = self._cells[name].place.result()
-        return None if result is None else {"error": None, **result}
 
-    def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
-        """Keep the reason of a cell without a result; the cell has written its result itself."""
-        if content["error"] is not None:
-            key = self._cells[name].key
-            self.failures.append(
-                {
-                    "condition": key.condition,
-                    "model": key.model,
-                    "seed": key.seed,
-                    "error": content["error"],
-                    "kind": content["kind"],
-                    "outcome": lost(content, is_judged=True)["outcome"],
-                }
-            )
-
-    def note_seconds(self, name: str, seconds: float) -> None:
-        """Note nothing: the result of a cell has its time."""
-
-    def ended(self) -> list[tuple[RunCell, dict[str, Any]]]:
-        """Return the cells that have a result, each with it."""
-        results = ((cell, cell.place.result()) for cell in self._cells.values())
-        return [(cell, result) for cell, result in results if result is not None]
+def _failures(cells: Sequence[RunCell], results: StudyFolder) -> list[dict[str, object]]:
+    """Return why cells that were tried have no result."""
+    contents = ((cell.key, results.cell(cell.key.name)) for cell in cells)
+    return [
+        {
+            "condition": key.condition,
+            "model": key.model,
+            "seed": key.seed,
+            "error": content["error"],
+            "kind": content["kind"],
+            "outcome": lost(content, is_judged=True)["outcome"],
+        }
+        for key, content in contents
+        if content is not None and content["error"] is not None
+    ]
 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
@@ -241,12 +236,11 @@ def _failures_text(
 
 
 def _parts(
-    run: _Run,
+    report: Mapping[str, Any],
     cells: Sequence[RunCell],
-    ended: Sequence[tuple[RunCell, dict[str, Any]]],
-    warned: Mapping[str, str],
+    ended: Sequence[_Ended],
+    lines: Sequence[str],
 ) -> Iterator[Printed]:
-    results = [result for _, result in ended]
     for number, about in cells[0].scenario.conditions.items():
         if any(cell.scenario.condition == number for cell in cells):
             yield Text(f"condition {number}: {about}")
@@ -256,9 +250,8 @@ def _parts(
         yield outcome_table(rows, stdout())
         yield from (line for row in rows for line in row.notes)
     else:
-        yield score_table(cells[0].scenario.name, score_runs(results, run.failures))
-    yield from (*_unread(results), *warned.values())
-    yield f"recorded in {run.folder.path}"
+        yield score_table(cells[0].scenario.name, report["scores"])
+    yield from (*_unread(report["runs"]), *lines)
 
 
 def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:

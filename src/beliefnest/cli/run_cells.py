@@ -4,11 +4,12 @@ import re
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from beliefnest.cli.accounts import accounts
 from beliefnest.cli.console import progress_on
-from beliefnest.cli.folder import ConditionFolder, RunFolder
+from beliefnest.cli.folder import ConditionFolder
 from beliefnest.cli.gallery import Gallery
 from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.report import outcome_json
@@ -35,12 +36,14 @@ class RunCell(Cell):
     """One scenario under one condition with one model, once, with a folder and pictures.
 
     Attributes:
+        folder: Folder of the run.
         place: Folder of the cell.
         is_flat: True if the run has one model and one repeat: no title names them.
         embody: Paths of beliefs that people visit while it is played.
         gallery: Pictures of the run, which draws that of the cell.
     """
 
+    folder: Path
     place: ConditionFolder
     is_flat: bool
     embody: Sequence[str]
@@ -76,8 +79,9 @@ class RunCell(Cell):
             reports = accounts(nest, outcome)
             readings = {"readings": _readings(nest)} if "claims_from" in self.key.setting else {}
         result = {**outcome_json(outcome, self.key.model, place.path, reports), **readings}
-        self.gallery.add(picture, place, result)
-        return {"error": None, **result}
+        self.gallery.add(picture, place)
+        run = place.store.relative_to(self.folder).as_posix()
+        return {"error": None, **result, "run": run}
 
 
 def _readings(nest: Nest) -> dict[str, object]:
@@ -90,7 +94,7 @@ def _readings(nest: Nest) -> dict[str, object]:
 def plan_run_cells(
     scenarios: Sequence[Scenario],
     setting: dict[str, Any],
-    folder: RunFolder,
+    folder: Path,
     embody: Sequence[str],
     gallery: Gallery,
 ) -> list[RunCell]:
@@ -125,11 +129,12 @@ def plan_run_cells(
                     setting=setting,
                 )
                 condition = "run" if key.condition is None else f"condition-{key.condition}"
-                place = ConditionFolder(folder.path / above / condition)
+                place = ConditionFolder(folder / above / condition)
                 planned.append(
                     RunCell(
                         key=key,
                         scenario=scenario,
+                        folder=folder,
                         place=place,
                         is_flat=flat,
                         embody=embody,

@@ -30,13 +30,12 @@ from beliefnest.studies.reproducing import (
     differing_table,
     reproduce_study,
 )
-from beliefnest.studies.run_result import ReportedRun, read_report
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import is_address
 
 _MOST_TOLD = 20
-_OF_MACHINE = ("seconds", "run_dir", "model", "table")
+_OF_MACHINE = ("seconds", "run_dir", "key", "model", "table")
 """Keys of results that differ between machines, name the model that replays answers, or repeat
 other keys for people."""
 
@@ -79,9 +78,9 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
             def told(progress: StudyProgress) -> None:
                 on_progress("playing", progress.done + progress.failed, progress.total)
 
-            if isinstance(result.folder, ReportedRun):
+            if result.folder.of == "run":
                 on_progress("playing", 0, 0)
-                reproduction = _reproduce_run(result, result.folder, again, trust=trust)
+                reproduction = _reproduce_run(result, again, trust=trust)
             else:
                 reproduction = reproduce_study(folder, again, jobs, told, trust=trust)
         differences = [*damaged, *reproduction.differences]
@@ -163,11 +162,9 @@ def _other_versions(recorded: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     }
 
 
-def _reproduce_run(
-    result: StudyRecord, run: ReportedRun, again: Path, *, trust: bool
-) -> Reproduction:
+def _reproduce_run(result: StudyRecord, again: Path, *, trust: bool) -> Reproduction:
     """Run the conditions of a run again, with its recorded answers, and compare the results."""
-    folder, settings = run.path, run.report["settings"]
+    folder, settings = result.folder.path, result.plan["cells"][0]["key"]["setting"]
     check_trust(_code_of(result), trust=trust)
     models = _replaying(result, again.with_name("answers"))
     if is_address(settings["world"]):
@@ -197,15 +194,18 @@ def _reproduce_run(
         skills=settings.get("skills"),
         max_output_tokens=settings.get("max_output_tokens"),
     )
-    # What a command prints is not the result here: the report in the folder is.
+    # What a command prints is not the result here: the cells in the folder are.
     with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(ModelError):
         run_scenarios(options)
-    played = read_report(again)
+    ended = [cell for cell, content in _contents(result) if content["error"] is None]
     return Reproduction(
-        cells=len(run.report["runs"]),
-        left_out=len(run.report["failures"]),
+        cells=len(ended),
+        left_out=len(result.plan["cells"]) - len(ended),
         rows=sum(row["outcome"] != "error" for row in result.rows),
-        differences=(*differing_table(result), *_differences(run.report, played, models)),
+        differences=(
+            *differing_table(result),
+            *_differences(result, StudyRecord.read(again), models),
+        ),
     )
 
 
@@ -223,18 +223,25 @@ def _replaying(result: StudyRecord, folder: Path) -> dict[str, str]:
     return models
 
 
-def _differences(
-    recorded: Mapping[str, Any], again: Mapping[str, Any], models: Mapping[str, str]
-) -> Iterator[PairedDifference]:
-    def key(run: Mapping[str, Any], model: str) -> tuple[Any, ...]:
-        return run["condition"], run["seed"], model
+def _contents(run: StudyRecord) -> Iterator[tuple[Mapping[str, Any], Mapping[str, Any]]]:
+    """Yield the cells that were tried, each with the content of its file."""
+    for cell in run.plan["cells"]:
+        content = run.folder.cell(cell["name"])
+        if content is not None:
+            yield cell, content
 
-    failed = {key(each, each["model"]): each["error"] for each in again["failures"]}
-    after = {key(each, each["model"]): each for each in again["runs"]}
-    for number, before in enumerate(recorded["runs"]):
-        where = f"run.json, runs.{number}"
-        cell = key(before, models[before["model"]])
-        if cell in failed:
-            yield PairedDifference(where, ERROR, None, failed[cell])
-        else:
-            yield from differing_contents(before, after.get(cell, {}), where, _OF_MACHINE)
+
+def _differences(
+    recorded: StudyRecord, again: StudyRecord, models: Mapping[str, str]
+) -> Iterator[PairedDifference]:
+    def key(cell: Mapping[str, Any], model: str) -> tuple[Any, ...]:
+        return cell["key"]["condition"], cell["seed"], model
+
+    after = {key(cell, cell["key"]["model"]): content for cell, content in _contents(again)}
+    for cell, before in _contents(recorded):
+        where = f"cells/{cell['name']}.json"
+        now = after.get(key(cell, models[cell["key"]["model"]]), {})
+        if before["error"] is None and now.get("error") is not None:
+            yield PairedDifference(where, ERROR, None, now["error"])
+        elif before["error"] is None:
+            yield from differing_contents(before, now, where, _OF_MACHINE)

@@ -7,13 +7,11 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.studies.result import StudyResult
-from beliefnest.studies.run_result import REPORT, read_report
 
 FrameSource = str | Path | StudyResult
 """A run file, the folder of a run, the folder of a study, or a study's result."""
 
 _RUN_FILE = "run.bn"
-_AGAIN = "move it away to read the recorded runs alone"
 
 
 @dataclass(frozen=True)
@@ -33,10 +31,12 @@ class RecordedCell:
 
 
 def study_of(source: FrameSource) -> StudyResult | None:
-    """Return the study of a source; None if the source is not a study."""
+    """Return the study or run of a source; None if the source has no results."""
     if isinstance(source, StudyResult):
         return source
-    return StudyResult.read(source) if (Path(source) / "cells").is_dir() else None
+    # A run of an earlier version is refused as it is everywhere.
+    has_results = any((Path(source) / name).exists() for name in ("cells", "run.json"))
+    return StudyResult.read(source) if has_results else None
 
 
 def cells_of(source: FrameSource) -> Iterator[RecordedCell]:
@@ -53,18 +53,13 @@ def cells_of(source: FrameSource) -> Iterator[RecordedCell]:
     if path.is_file():
         yield RecordedCell(path.stem, {}, path)
         return
-    report = read_report(path, _AGAIN) if (path / REPORT).is_file() else {"runs": []}
-    runs = {Path(run["run_dir"]).absolute(): run for run in report["runs"]}
     files = sorted(path.rglob(_RUN_FILE))
     if not files:
         raise InputError(
             f"there is no run at {path}: it has no {_RUN_FILE} and is not the folder of a study"
         )
     for file in files:
-        relative = file.parent.relative_to(path).as_posix()
-        about = runs.get(file.parent.absolute(), {})
-        named = {"scenario": report["scenario"], **about} if about else {}
-        yield RecordedCell(relative, named, file)
+        yield RecordedCell(file.parent.relative_to(path).as_posix(), {}, file)
 
 
 def _cells_of_study(study: StudyResult) -> Iterator[RecordedCell]:
@@ -76,4 +71,5 @@ def _cells_of_study(study: StudyResult) -> Iterator[RecordedCell]:
         run = record.get("run")
         file = folder.path / run if run else None
         about = {**planned["key"], "seed": planned["seed"], **record}
-        yield RecordedCell(planned["name"], about, file)
+        name = Path(run).parent.as_posix() if run and folder.of == "run" else planned["name"]
+        yield RecordedCell(name, about, file)

@@ -11,11 +11,10 @@ from beliefnest.llm.secrets import Secrets, secrets_in
 from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.archive import check_secrets, with_manifest
 from beliefnest.studies.filter_packages import PACKAGES, filter_packages
-from beliefnest.studies.kinds import EPISODE_KIND, SCENARIO_KIND
+from beliefnest.studies.kinds import EPISODE_KIND, RUN_KIND, SCENARIO_KIND
 from beliefnest.studies.methods import RunFacts, facts_of, methods_text
 from beliefnest.studies.page import page_text
 from beliefnest.studies.plainframe import csv_text
-from beliefnest.studies.run_result import ReportedRun, read_report
 from beliefnest.studies.study_record import StudyRecord
 
 
@@ -25,19 +24,17 @@ def opened(folder: Path) -> StudyRecord:
     Raises:
         InputError: The folder holds neither.
     """
-    if (folder / "study.json").is_file() or (folder / "cells").is_dir():
-        result = StudyRecord.read(folder)
-        if result.kind not in (SCENARIO_KIND, EPISODE_KIND):
-            raise InputError(
-                f"{folder} holds {result.kind.name}; supplements are of scenarios and episodes"
-            )
-        return result
-    if (folder / "run.json").is_file():
-        return StudyRecord(ReportedRun(folder, read_report(folder)))
-    raise InputError(
-        f"there is neither a study nor a run at {folder}; give the folder of `beliefnest study "
-        "--out` or `beliefnest run --out`"
-    )
+    if not any((folder / name).exists() for name in ("study.json", "cells", "run.json")):
+        raise InputError(
+            f"there is neither a study nor a run at {folder}; give the folder of `beliefnest study "
+            "--out` or `beliefnest run --out`"
+        )
+    result = StudyRecord.read(folder)
+    if result.kind not in (SCENARIO_KIND, EPISODE_KIND, RUN_KIND):
+        raise InputError(
+            f"{folder} holds {result.kind.name}; supplements are of scenarios and episodes"
+        )
+    return result
 
 
 def bundled(result: StudyRecord, environment: Mapping[str, str], *, runs: bool) -> dict[str, bytes]:
@@ -175,7 +172,9 @@ _CONTENTS = {
     "run": {
         "scenario.yaml": "the scenario as it was played",
         "scenario.templates.json": "its prompt templates",
-        "run.json": "settings, versions and all results",
+        "study.json": "the plan: each cell with its settings, and versions",
+        "cells/": "the result of each cell",
+        "run.json": "settings, versions and all results in one object",
         "model.jsonl": "every request to a model and its answer",
         "rows.csv": "one row for each probe",
         "picture.png": "all conditions at their ends",

@@ -1,13 +1,19 @@
 """Forms of a study's files, used to check files that are read."""
 
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
 
 from beliefnest.episodes.measures import Measures
 from beliefnest.errors import InputError
-from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, checked_form, read_json
+from beliefnest.scenarios.record_forms import (
+    ExpectationForm,
+    ProbeForm,
+    UsageForm,
+    checked_form,
+    read_json,
+)
 from beliefnest.studies.inputs import InputIndex
 
 
@@ -15,6 +21,7 @@ class FailedCell(msgspec.Struct):
     """Content of the file of a cell without a result."""
 
     error: str
+    kind: str
 
 
 class _StudyProbe(ProbeForm, kw_only=True):
@@ -30,6 +37,32 @@ class PlayedScenario(msgspec.Struct):
     expectations: list[ExpectationForm]
     probes: list[_StudyProbe]
     run: str
+
+
+class _TableForm(msgspec.Struct):
+    cells: dict[str, str]
+    notes: list[str]
+
+
+class PlayedCondition(msgspec.Struct):
+    """Content of the file of a cell of a run, as `outcome_json` writes it."""
+
+    error: None
+    condition: int | None
+    model: str
+    seed: int
+    ok: bool
+    ticks: int
+    seconds: float
+    reality: dict[str, Any]
+    beliefs: dict[str, dict[str, Any]]
+    expectations: list[ExpectationForm]
+    probes: list[ProbeForm]
+    failures: list[str]
+    usage: UsageForm
+    run: str
+    run_dir: str
+    table: _TableForm
 
 
 class PlayedEpisode(msgspec.Struct):
@@ -109,6 +142,33 @@ class ScenariosPlan(CellsPlan):
 
     cells: list[_PlannedScenario]
     inputs: InputIndex
+
+
+class _RunSetting(msgspec.Struct):
+    conditions: list[int]
+    world: str
+    models: list[str]
+    repeat: int
+    seed: int
+    attempts: int
+    temperature: float | None
+
+
+class _RunKey(_ScenarioKey):
+    setting: _RunSetting
+
+
+class _PlannedCondition(_PlannedScenario):
+    key: _RunKey
+
+
+class RunPlan(CellsPlan):
+    """Plan of a run."""
+
+    status: str
+    world: str
+    models: list[str]
+    cells: Annotated[list[_PlannedCondition], msgspec.Meta(min_length=1)]
 
 
 class _PersonKey(_ScenarioKey):

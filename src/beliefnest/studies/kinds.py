@@ -5,7 +5,14 @@ from typing import Any
 
 from beliefnest.importing import installed, load
 from beliefnest.studies.episode_rows import EPISODES
-from beliefnest.studies.forms import EpisodesPlan, PlayedEpisode, PlayedScenario, ScenariosPlan
+from beliefnest.studies.forms import (
+    EpisodesPlan,
+    PlayedCondition,
+    PlayedEpisode,
+    PlayedScenario,
+    RunPlan,
+    ScenariosPlan,
+)
 from beliefnest.studies.rows import PROBES
 from beliefnest.studies.table import Table
 
@@ -40,6 +47,13 @@ SCENARIO_KIND = CellKind(
     table=PROBES,
     subject="scenario",
 )
+RUN_KIND = CellKind(
+    name="runs",
+    plan=RunPlan,
+    cell=PlayedCondition,
+    table=PROBES,
+    subject="scenario",
+)
 EPISODE_KIND = CellKind(
     name="episodes",
     plan=EpisodesPlan,
@@ -49,7 +63,7 @@ EPISODE_KIND = CellKind(
     players="players",
     player=("policy", "policies"),
 )
-_KINDS = {each.name: each for each in (SCENARIO_KIND, EPISODE_KIND)}
+_KINDS = {each.name: each for each in (SCENARIO_KIND, RUN_KIND, EPISODE_KIND)}
 _GROUP = "beliefnest.kinds"
 """Group of entry points of kinds that stand above studies, by name: objects `CellKind`."""
 

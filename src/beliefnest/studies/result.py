@@ -18,7 +18,6 @@ from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
 from beliefnest.studies.regression import Effect, FitKind, Regression, fit_rows
 from beliefnest.studies.reproducing import Reproduction, reproduce_study
-from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_record import COMPARED, StudyRecord
 
 if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they are needed.
@@ -27,13 +26,7 @@ if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they 
 
 
 class StudyResult(StudyRecord):
-    """Results in the folder of a study.
-
-    Attributes:
-        folder: Folder of the study.
-    """
-
-    folder: StudyFolder
+    """Results in the folder of a study."""
 
     def frame(self) -> "pandas.DataFrame":
         """Return one row for each probe of each cell, or each episode, in the order of the plan.

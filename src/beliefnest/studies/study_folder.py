@@ -2,10 +2,10 @@
 
 import json
 import shutil
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Protocol
+from typing import Any, Literal
 
 import msgspec
 
@@ -17,9 +17,8 @@ from beliefnest.locking import is_lock
 from beliefnest.plan.spending import append_line
 from beliefnest.plan.terms import Terms
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
-from beliefnest.studies.copies import CellResults
 from beliefnest.studies.forms import FailedCell, PeopleForm, PlanKind, SecondsForm, read_marked
-from beliefnest.studies.kinds import CellKind, kind_named
+from beliefnest.studies.kinds import RUN_KIND, CellKind, kind_named
 from beliefnest.world.texts import quoted
 
 _PLAN = "study.json"
@@ -45,49 +44,21 @@ class PersonCell:
     found: Mapping[str, Any]
 
 
-class ResultFolder(CellResults, Protocol):
-    """Folder with the results of the cells of a plan: of a study, or of a run."""
-
-    @property
-    def of(self) -> Literal["study", "run"]:
-        """Return what it is the folder of."""
-
-    @property
-    def kind(self) -> CellKind:
-        """Kind of the cells."""
-
-    @property
-    def path(self) -> Path:
-        """The folder."""
-
-    def plan(self) -> dict[str, Any]:
-        """Return the latest plan."""
-
-    def people(self) -> list[dict[str, Any]]:
-        """Return the entries of all cells that participants answered."""
-
-    def sessions(self) -> dict[str, dict[str, Any]]:
-        """Return how many participants of each name began, ended and stopped."""
-
-    def exchanges(self) -> Sequence[Exchange]:
-        """Return the recorded answers of models; raise InputError if a file is damaged."""
-
-
 @dataclass(frozen=True, slots=True)
 class StudyFolder:
-    """Folder of a study.
+    """Folder of a study, a suite or a run.
 
     It holds `study.json` (the latest plan), `cells/` (the result of each finished cell),
     `people.json` (entries of cells that participants answered), `seconds.jsonl` (wall times, which
     vary between runs), `answers/` (cached answers of models), `spent.jsonl` (usage of answers) and
-    `runs/` (recorded runs).
+    `runs/` (recorded runs). That of a run has a folder for each cell in place of `runs/`, and all
+    requests in `model.jsonl`.
 
     Attributes:
         path: The folder.
         kind: Kind of the cells.
     """
 
-    of: ClassVar[Literal["study"]] = "study"
     path: Path
     kind: CellKind
 
@@ -122,11 +93,17 @@ class StudyFolder:
         """
         folder = Path(path)
         if not (folder / _CELLS).is_dir():
-            run = "; it holds a run of `beliefnest run`" if (folder / "run.json").exists() else ""
-            raise InputError(
-                f"there is no study at {path}{run}; give a folder of `beliefnest study`"
-            )
+            if (folder / "run.json").exists():
+                raise InputError(
+                    f"{path} holds a run of an earlier version; run it again in a new folder"
+                )
+            raise InputError(f"there is no study at {path}; give a folder of `beliefnest study`")
         return StudyFolder(folder, _kind_in(folder / _PLAN))
+
+    @property
+    def of(self) -> Literal["study", "run"]:
+        """Return what it is the folder of."""
+        return "run" if self.kind is RUN_KIND else "study"
 
     @property
     def cells(self) -> Path:
@@ -142,6 +119,11 @@ class StudyFolder:
     def ledger(self) -> Path:
         """File with the usage of each answer, one line each."""
         return self.path / "spent.jsonl"
+
+    @property
+    def requests(self) -> Path:
+        """File with all requests of a run to models and their answers, one line each."""
+        return self.path / "model.jsonl"
 
     def terms(self, limits: RunLimits, *, record: bool = False) -> Terms:
         """Return the terms of a plan whose answers and usage this folder keeps.
@@ -181,21 +163,32 @@ class StudyFolder:
 
     def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
         """Write the file of a cell, completely or not at all."""
-        replace_file(self.cells / f"{name}.json", _json(content))
+        # Tables and pages of runs keep the order of play.
+        text = _json(content, sort_keys=self.kind is not RUN_KIND)
+        replace_file(self.cells / f"{name}.json", text)
 
     def note_seconds(self, name: str, seconds: float) -> None:
         """Append the wall time of a cell."""
         append_line(self._times, json.dumps({"cell": name, "seconds": round(seconds, 3)}))
 
     def exchanges(self) -> list[Exchange]:
-        """Return the cached answers; raise InputError if a file is damaged."""
+        """Return the recorded answers; raise InputError if a file is damaged."""
         exchanges = []
-        for file in sorted(self.answers.glob("*.json")):
+        for place, text in self._answers():
             try:
-                exchanges.append(decode_exchange(read_regular(file)))
-            except (msgspec.MsgspecError, OSError) as error:
-                raise InputError(f"{file} is damaged: {error}; delete it") from None
+                exchanges.append(decode_exchange(text))
+            except msgspec.MsgspecError as error:
+                raise InputError(f"{place} is damaged: {error}; delete it") from None
         return exchanges
+
+    def _answers(self) -> Iterator[tuple[str, bytes]]:
+        """Yield each recorded answer with its place; of a run also those from elsewhere."""
+        if self.kind is RUN_KIND:
+            lines = read_regular(self.requests).splitlines() if self.requests.is_file() else ()
+            yield from ((f"{self.requests}:{number}", line) for number, line in enumerate(lines, 1))
+            return
+        for file in sorted(self.answers.glob("*.json")):
+            yield str(file), read_regular(file)
 
     def seconds(self) -> dict[str, float]:
         """Return the known wall times of cells, in seconds."""
@@ -364,9 +357,9 @@ def _kind_in(file: Path) -> CellKind:
     return kind
 
 
-def _json(content: Mapping[str, Any]) -> str:
+def _json(content: Mapping[str, Any], *, sort_keys: bool = True) -> str:
     # The encoder of `json` takes five times as long with `indent`; let msgspec add the lines.
-    flat = json.dumps(content, sort_keys=True, ensure_ascii=False)
+    flat = json.dumps(content, sort_keys=sort_keys, ensure_ascii=False)
     return msgspec.json.format(flat, indent=1) + "\n"
 
 

@@ -16,7 +16,7 @@ from beliefnest.studies.positions import choices_of, count_positions
 from beliefnest.studies.power import VariationSource
 from beliefnest.studies.power_sources import recorded_sources
 from beliefnest.studies.row_filter import RowFilter
-from beliefnest.studies.study_folder import ResultFolder, StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table, variation_columns
 
 COMPARED = (
@@ -34,7 +34,7 @@ class StudyRecord:
         kept: Condition that all rows hold; None: all rows of the study.
     """
 
-    folder: ResultFolder
+    folder: StudyFolder
     kept: RowFilter | None = None
 
     @classmethod
