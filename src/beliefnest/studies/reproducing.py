@@ -77,6 +77,8 @@ def reproduce_study(
         BodyError: A worker process ended unexpectedly.
     """
     recorded = StudyRecord.read(folder)
+    if recorded.folder.of == "run":
+        raise InputError(f"{folder} holds a run; play it again with `beliefnest reproduce`")
     # Answers of people cannot be played again; their rows are compared with their cells.
     plan = recorded.folder.plan()
     contents = {cell["name"]: recorded.folder.cell(cell["name"]) for cell in plan["cells"]}
