@@ -19,6 +19,7 @@ from beliefnest.cli.options import (
     PlayOptions,
     PowerOptions,
     RunOptions,
+    SearchItemsOptions,
     ServeOptions,
     ShowOptions,
     StatsOptions,
@@ -356,6 +357,15 @@ def items(options: ItemsOptions) -> int:
     from beliefnest.cli.items import run_items
 
     return run_items(options)
+
+
+@app.command(rich_help_panel=_PLAY)
+@with_options(SearchItemsOptions)
+def search_items(options: SearchItemsOptions) -> None:
+    """Search variations of a study that a model fails, and test what makes them hard."""
+    from beliefnest.cli.search_items import run_search
+
+    run_search(options)
 
 
 @app.command(rich_help_panel=_PLAY)

@@ -10,6 +10,7 @@ from beliefnest.cli.console import Printed, print_report, progress_on, result_ta
 from beliefnest.cli.options import ItemsOptions
 from beliefnest.errors import InputError
 from beliefnest.studies.items.item_set import ItemSet, check_folder, read_description
+from beliefnest.studies.items.parquet import parquet_differences, write_parquet_of
 from beliefnest.studies.items.report import report_of
 from beliefnest.studies.study import Study
 from beliefnest.world.words import counted, listed
@@ -42,11 +43,14 @@ def run_items(options: ItemsOptions) -> int:
     if options.verify:
         there = read_description(options.folder)
         differing = replace(made, made_with=there.made_with).differences(options.folder)
+        differing += parquet_differences(made, options.folder)
         if differing and there.made_with != made.made_with:
             of_set, here = (_versions(each) for each in (there.made_with, made.made_with))
             differing.append(f"made with {of_set}, and again with {here}: that may be the cause")
     else:
         made.write(options.folder)
+        if options.parquet:
+            write_parquet_of(made, options.folder)
     unanswerable = sum(each.is_unanswerable for each in made.dropped)
     report = report_of(made.items) if options.report else {}
     summary = {

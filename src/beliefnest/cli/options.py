@@ -392,6 +392,9 @@ class ItemsOptions:
     verify: Annotated[
         bool, typer.Option("--verify", help="Make the set again, and compare every byte.")
     ] = False
+    parquet: Annotated[bool, typer.Option("--parquet", help="Write the items as Parquet, too.")] = (
+        False
+    )
     held_out: Annotated[
         float | None, typer.Option(metavar="SHARE", help="Share of seeds whose items are held out.")
     ] = None
@@ -428,6 +431,29 @@ class ItemsOptions:
         if self.out is None:
             raise InputError("name the folder of the set, or of the results, with -o")
         return self.out
+
+
+@dataclass(frozen=True, slots=True)
+class SearchItemsOptions:
+    """Options of `beliefnest search-items`."""
+
+    study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="Folder; an interrupted search continues in it.")
+    ]
+    model: Annotated[str, typer.Option(help="Model to search weaknesses of.")] = "offline"
+    budget: Annotated[
+        int, typer.Option(help="Most questions; half of them search, the others test.")
+    ] = 400
+    transfer: Annotated[
+        str | None, typer.Option(metavar="MODEL", help="Second model, which is tested as well.")
+    ] = None
+    seed: Annotated[int, typer.Option(help="Seed of all draws.")] = 0
+    max_cost: Annotated[
+        float | None,
+        typer.Option(help="Cost limit in US dollars; default: that of the study.", min=0),
+    ] = None
+    json: Json = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,6 +72,13 @@ def drawn_variations(
     return drawn
 
 
+def endless_draws(document: Document, seed: str) -> Iterator[Variation]:
+    """Yield random variations without end, also equal ones and those that break a constraint."""
+    drawing, chance = _Drawing.of(document), random.Random(seed)
+    while True:
+        yield drawing.draw(chance)
+
+
 def _draws(
     document: Document,
     drawing: "_Drawing",

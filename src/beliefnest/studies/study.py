@@ -34,6 +34,7 @@ from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.items.item_set import ItemSet
 from beliefnest.studies.items.making import MadeItems, made_items, with_balanced_items
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
+from beliefnest.studies.items.space import ItemSpace
 from beliefnest.studies.kinds import EPISODE_KIND, SCENARIO_KIND
 from beliefnest.studies.list_balance import with_balanced_lists
 from beliefnest.studies.participants.items import item_name
@@ -467,6 +468,17 @@ class Study:
                 **({"scipy": version_of("scipy")} if design.balance else {}),
             },
         )
+
+    def item_space(self) -> ItemSpace:
+        """Return all items that variations of the study can make, for a search among them.
+
+        Raises:
+            InputError: The study is one of episodes, or reads claims with a model.
+        """
+        if not isinstance(self._design, Design):
+            raise InputError("questions are those of scenarios; this study plays episodes")
+        refuse_claims(self._design.setting)
+        return ItemSpace(self._design, self._documents)
 
     def _scenarios(
         self, on_variation: Callable[[int, int], None] = lambda done, total: None
