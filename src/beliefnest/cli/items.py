@@ -37,12 +37,13 @@ def run_items(options: ItemsOptions) -> int:
     if options.model is not None:
         raise InputError("--model answers and plays with --functional; give both, or none")
     set_options = _set_options(options)
+    study = Study.load(options.study)
     with progress_on(options.study.stem) as on_progress:
-        made = Study.load(options.study).items(**set_options, on_item=on_progress)
-    differing: list[str] = []
+        made = study.items(**set_options, on_item=on_progress)
+        compared, differing = study.check_items(made, options.check_embedded, on_progress)
     if options.verify:
         there = read_description(options.folder)
-        differing = replace(made, made_with=there.made_with).differences(options.folder)
+        differing += replace(made, made_with=there.made_with).differences(options.folder)
         differing += parquet_differences(made, options.folder)
         if differing and there.made_with != made.made_with:
             of_set, here = (_versions(each) for each in (there.made_with, made.made_with))
@@ -57,10 +58,11 @@ def run_items(options: ItemsOptions) -> int:
         "folder": str(options.folder),
         "items": len(made.items),
         "dropped": len(made.dropped),
+        "compared": compared,
         "differences": differing,
         **({"report": report} if report else {}),
     }
-    print_report(summary, _parts(options, made, differing, report), as_json=options.json)
+    print_report(summary, _parts(options, made, summary), as_json=options.json)
     return int(bool(differing or unanswerable))
 
 
@@ -87,10 +89,9 @@ def _set_options(options: ItemsOptions) -> dict[str, Any]:
     return {name: getattr(there, name) for name in ("name", *options_of_set)}
 
 
-def _parts(
-    options: ItemsOptions, made: ItemSet, differing: list[str], report: Mapping[str, Any]
-) -> Iterator[Printed]:
-    if report:
+def _parts(options: ItemsOptions, made: ItemSet, summary: Mapping[str, Any]) -> Iterator[Printed]:
+    differing = summary["differences"]
+    if report := summary.get("report"):
         yield from (_counts(report), _positions(report), _shortcuts(report))
     for each in made.dropped[:_MOST_DROPPED]:
         yield f"dropped: {each.scenario}, probe {each.probe}: {each.why}"
@@ -103,6 +104,8 @@ def _parts(
             "for their options; mend these in the scenario"
         )
     yield from differing
+    if options.check_embedded:
+        yield f"compared with the embedded world: {counted(summary['compared'], 'item')}"
     size = ", ".join(f"{counted(len(each), part)}" for part, each in _sizes(made))
     if not options.verify:
         yield f"{options.folder}: {size}"

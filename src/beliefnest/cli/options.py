@@ -395,6 +395,9 @@ class ItemsOptions:
     parquet: Annotated[bool, typer.Option("--parquet", help="Write the items as Parquet, too.")] = (
         False
     )
+    check_embedded: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Play N scenes in the embedded world, too.")
+    ] = 0
     held_out: Annotated[
         float | None, typer.Option(metavar="SHARE", help="Share of seeds whose items are held out.")
     ] = None

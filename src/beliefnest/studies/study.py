@@ -32,7 +32,12 @@ from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies
 from beliefnest.studies.file import read_design
 from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.items.item_set import ItemSet
-from beliefnest.studies.items.making import MadeItems, made_items, with_balanced_items
+from beliefnest.studies.items.making import (
+    MadeItems,
+    made_items,
+    played_otherwise,
+    with_balanced_items,
+)
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
 from beliefnest.studies.items.space import ItemSpace
 from beliefnest.studies.kinds import EPISODE_KIND, SCENARIO_KIND
@@ -479,6 +484,23 @@ class Study:
             raise InputError("questions are those of scenarios; this study plays episodes")
         refuse_claims(self._design.setting)
         return ItemSpace(self._design, self._documents)
+
+    def check_items(
+        self, items: ItemSet, scenes: int, on_item: OnItem | None = None
+    ) -> tuple[int, list[str]]:
+        """Play some scenes of the study's items in the embedded world; see `played_otherwise`.
+
+        Args:
+            items: Items of this study.
+            scenes: Number of scenes, chosen by the seed of the study.
+            on_item: Function that receives the progress.
+
+        Raises:
+            BeliefNestError: A script failed.
+        """
+        _, cells = self._scenarios()
+        say = on_item or _say_nothing_of_items
+        return played_otherwise(cells, self._documents, items.items, scenes, say)
 
     def _scenarios(
         self, on_variation: Callable[[int, int], None] = lambda done, total: None

@@ -100,6 +100,20 @@ def item(made: ItemSet, condition: int, to: str, question: str) -> ItemRecord:
     return found
 
 
+@pytest.mark.long
+def test_scenes_are_played_again_in_the_embedded_world(folder, made):
+    study = bn.Study.load(folder / "study.yaml")
+    of_scene = len(made.items) // 4
+    assert study.check_items(made, 1) == (of_scene, [])
+    other = {"left box": "right box", "right box": "left box"}
+    wrong = tuple(
+        msgspec.structs.replace(each, right=other.get(each.right, "air")) for each in made.items
+    )
+    compared, lines = study.check_items(replace(made, items=wrong), 1)
+    assert compared == len(lines) == of_scene
+    assert all("in the embedded world: '" in line for line in lines)
+
+
 def test_items_have_what_their_readers_need(made):
     found = item(made, 1, "right", "Where will Sally")
     assert (found.right, found.order, found.path, found.chain) == (

@@ -1,6 +1,7 @@
 """Items of a study: its scripts are played without any model, and each question is recorded."""
 
 import json
+import random
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -48,6 +49,48 @@ def made_items(
     return {
         item.name: [_made(nest, item, each) for each in item.questions] for item, nest, _ in played
     }
+
+
+def played_otherwise(
+    cells: Sequence[Cell],
+    documents: Mapping[str, Document],
+    items: Iterable[ItemRecord],
+    scenes: int,
+    on_item: OnItem,
+) -> tuple[int, list[str]]:
+    """Play some scenes of a set in the embedded world, and compare their right answers.
+
+    Args:
+        cells: Cells of the study's plan; their first seed chooses the scenes.
+        documents: Documents of its scenarios.
+        items: Items of the set.
+        scenes: Number of scenes to play.
+        on_item: Function that receives the progress.
+
+    Returns:
+        Number of compared items, and a line for each that has another right answer there.
+
+    Raises:
+        BeliefNestError: A script failed; the message names the cell.
+    """
+    items_by_id = {each.id: each for each in items}
+    every = items_of(cells, documents)
+    chosen = random.Random(cells[0].key.seed).sample(every, min(scenes, len(every)))
+    compared, lines = 0, []
+    for item, nest, _ in played_items(chosen, on_item, "embedded"):
+        for question in item.questions:
+            record = items_by_id.get(_id(item, question))
+            if record is None:
+                continue
+            compared += 1
+            again = _made(nest, item, question)
+            there = again.why if isinstance(again, DroppedQuestion) else repr(again.right)
+            if there != repr(record.right):
+                lines.append(
+                    f"{record.scenario}, item {record.id}: right is {record.right!r}, and in the "
+                    f"embedded world: {there}"
+                )
+    return compared, lines
 
 
 def with_balanced_items(
@@ -98,7 +141,7 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
     chain = parse_path(path, nest.agents)
     text, options = nest[probe.path].render(STORY), shuffled(asked, key.seed)
     return ItemRecord(
-        id=digest([item.name, question.id])[:16],
+        id=_id(item, question),
         text=text,
         question=place,
         options=options,
@@ -121,6 +164,10 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
         checked=verdict,
         shortcuts=shortcuts(nest, asked, naming, options, text),
     )
+
+
+def _id(item: Item, question: ItemQuestion) -> str:
+    return digest([item.name, question.id])[:16]
 
 
 def _factors(values: Mapping[str, Any]) -> dict[str, str]:
