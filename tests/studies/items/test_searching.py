@@ -8,7 +8,8 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
-from beliefnest.studies.items.asking import ItemAnswer
+from beliefnest.llm.messages import Answer
+from beliefnest.studies.items.asking import judged_answer
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.search_folder import search_items
 from beliefnest.studies.items.searching import ItemSearch, judged_pairs
@@ -117,9 +118,7 @@ def fails(item):
 
 
 def answered(item, ok):
-    return ItemAnswer(
-        id=item.id, model="m", answer="a", outcome="ok" if ok else "wrong", ok=ok, text=""
-    )
+    return judged_answer(item, "m", Answer(f"Answer: {'a' if ok else 'b'}"))
 
 
 def weaknesses(seed, judge):

@@ -6,9 +6,9 @@ import pytest
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.llm.messages import Answer
+from beliefnest.studies.items.asking import judged_answer, prompt_of
 from beliefnest.studies.items.item_set import ItemSet
 from beliefnest.studies.items.record import ItemRecord
-from beliefnest.suites.items.cells import judged, messages_of
 
 MODEL = """
 from beliefnest.llm.messages import Answer
@@ -86,15 +86,15 @@ def test_answers_count_as_in_studies_and_models_are_compared(answered, capsys):
 
 
 def test_a_model_reads_story_question_and_options():
-    system, user = messages_of(ITEMS[0])
+    system, user = prompt_of(ITEMS[0])
     assert "Answer: the option" in system.text
     assert user.text == "plain\n\nQuestion: Where is it?\n\nOptions:\nA) bag\nB) box\n"
 
 
 def test_an_answer_without_an_option_is_not_right():
-    assert judged(ITEMS[0], Answer("Answer: B"))["ok"]
-    both = judged(ITEMS[0], Answer("Answer: bag or box"))
-    assert (both["answered"], both["ok"], both["outcome"]) == (None, False, "ambiguous")
+    assert judged_answer(ITEMS[0], "any", Answer("Answer: B")).ok
+    both = judged_answer(ITEMS[0], "any", Answer("Answer: bag or box"))
+    assert (both.answered, both.ok, both.outcome) == (None, False, "ambiguous")
 
 
 def test_results_are_checked_against_their_set(answered, capsys):

@@ -1,16 +1,17 @@
 """Items that models are asked as text; their answers."""
 
 from string import ascii_uppercase
+from typing import Literal
 
 import jinja2
 import msgspec
 
-from beliefnest.errors import ModelError
-from beliefnest.llm.failures import NOT_ASKED
-from beliefnest.llm.messages import Finish, Message, Model, Sampling
+from beliefnest.llm.failures import UnusableAnswerError
+from beliefnest.llm.messages import Answer, Finish, Message, Model, Sampling
 from beliefnest.llm.reading_answers import read_answer
 from beliefnest.prompts import built_in_template
 from beliefnest.studies.items.record import ItemRecord
+from beliefnest.world.texts import quoted
 
 
 class ItemAnswer(msgspec.Struct, frozen=True, kw_only=True):
@@ -19,10 +20,12 @@ class ItemAnswer(msgspec.Struct, frozen=True, kw_only=True):
     Attributes:
         id: Id of the item.
         model: Name of the model.
-        answer: Option that the answer names; None: it names none, or several.
+        answered: Option that the answer names; None: it names none, or several.
+        ok: True if the answer is right.
         outcome: `ok`, `wrong`, or why there is no answer: `ambiguous`, `unread`, `cut`, `refused`,
             `no_answer`.
-        ok: True if the answer is right.
+        why_not: Why the answer is not right; empty: it is.
+        finish: Reason for the end of the answer; empty: no answer came.
         text: Complete text of the answer.
         tokens: Tokens sent and received.
         cost: Cost in US dollars; None: not known.
@@ -30,9 +33,11 @@ class ItemAnswer(msgspec.Struct, frozen=True, kw_only=True):
 
     id: str
     model: str
-    answer: str | None
-    outcome: str
+    answered: str | None
     ok: bool
+    outcome: str
+    why_not: str
+    finish: Finish | Literal[""]
     text: str
     tokens: int = 0
     cost: float | None = None
@@ -46,7 +51,7 @@ def prompt_of(item: ItemRecord) -> tuple[Message, ...]:
         f"{letter}) {option}\n"
         for letter, option in zip(ascii_uppercase, item.options, strict=False)
     )
-    prompt = f"{item.text}\n\nQuestion: {item.question}\n\nOptions:\n{options}"
+    prompt = f"{item.text.strip()}\n\nQuestion: {item.question}\n\nOptions:\n{options}"
     return Message("system", system), Message("user", prompt)
 
 
@@ -54,33 +59,44 @@ def ask_item(model: Model, item: ItemRecord) -> ItemAnswer:
     """Ask a model an item with options.
 
     Raises:
-        ModelError: The model cannot be asked, or a limit is reached.
+        ModelError: The model cannot be asked, or a limit is reached. An answer that is missing or
+            cannot be used is no error.
     """
     try:
         answer = model.answer(prompt_of(item), Sampling(seed=item.seed))
-    except NOT_ASKED:
-        raise
-    except ModelError as error:
-        fault = str(error)
+    except UnusableAnswerError as error:
         return ItemAnswer(
-            id=item.id, model=model.name, answer=None, outcome="no_answer", ok=False, text=fault
+            id=item.id,
+            model=model.name,
+            answered=None,
+            ok=False,
+            outcome="no_answer",
+            why_not=str(error),
+            finish="",
+            text="",
+            tokens=error.usage.tokens,
+            cost=error.usage.cost,
         )
-    option, outcome = judged_text(answer.text, item, answer.finish)
+    return judged_answer(item, model.name, answer)
+
+
+def judged_answer(item: ItemRecord, model: str, answer: Answer) -> ItemAnswer:
+    """Read and judge an answer to an item with options."""
+    reading = read_answer(answer.text, item.options, answer.finish)
+    answered = reading.option if reading.outcome == "read" else None
+    outcome, why_not = reading.row_outcome, reading.reason
+    if answered is not None:
+        outcome = "ok" if answered == item.right else "wrong"
+        why_not = "" if answered == item.right else f"answered {quoted(answered)}"
     return ItemAnswer(
         id=item.id,
-        model=model.name,
-        answer=option,
-        outcome=outcome,
+        model=model,
+        answered=answered,
         ok=outcome == "ok",
+        outcome=outcome,
+        why_not=why_not,
+        finish=answer.finish,
         text=answer.text,
         tokens=answer.usage.tokens,
         cost=answer.usage.cost,
     )
-
-
-def judged_text(text: str, item: ItemRecord, finish: Finish = "stop") -> tuple[str | None, str]:
-    """Return the option that an answer names, and its outcome; see `ItemAnswer`."""
-    reading = read_answer(text, item.options, finish)
-    if reading.outcome != "read":
-        return None, reading.row_outcome
-    return reading.option, "ok" if reading.option == item.right else "wrong"

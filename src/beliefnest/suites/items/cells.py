@@ -1,24 +1,17 @@
 """Items as cells of a plan: each asked once of one model."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import jinja2
 import msgspec
 
-from beliefnest.llm.failures import UnusableAnswerError
-from beliefnest.llm.messages import Answer, Message, Sampling, Usage
 from beliefnest.llm.model_settings import ModelSettings
-from beliefnest.llm.reading_answers import read_answer
 from beliefnest.plan.cells import digest
 from beliefnest.plan.terms import PlayStage
-from beliefnest.prompts import built_in_template
+from beliefnest.studies.items.asking import ask_item
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.suites.playing import SuiteKey, suite_kind
-from beliefnest.world.texts import quoted
-
-_LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 class AnsweredItem(msgspec.Struct, frozen=True, kw_only=True):
@@ -105,59 +98,22 @@ class ItemCell:
             ModelError: The model cannot be asked.
         """
         model = stage.terms.model(self.key.setting["model"], ModelSettings())
-        sampling = Sampling(seed=self.key.seed)
-        try:
-            answer = model.answer(messages_of(self.item), sampling)
-        except UnusableAnswerError as error:
-            row = {"outcome": "no_answer", "why_not": str(error), "ok": False}
-            return self._row(error.usage, row)
-        return self._row(answer.usage, judged(self.item, answer))
-
-    def _row(self, usage: Usage, row: Mapping[str, Any]) -> dict[str, Any]:
-        spent = {"tokens": usage.tokens, "cost": usage.cost}
-        answered = AnsweredItem(**{**self._asked, **row, **spent})
-        return {"error": None, "rows": [msgspec.to_builtins(answered)]}
+        answer = msgspec.to_builtins(ask_item(model, self.item))
+        row = AnsweredItem(**{**answer, **self._asked})
+        return {"error": None, "rows": [msgspec.to_builtins(row)]}
 
 
-def messages_of(item: ItemRecord) -> list[Message]:
-    """Return the messages by which an item is asked."""
-    lines = [f"{letter}) {option}" for letter, option in zip(_LETTERS, item.options, strict=False)]
-    parts = (item.text.strip(), f"Question: {item.question}", "\n".join(["Options:", *lines]))
-    system = jinja2.Template(built_in_template("answering").text).render(options=item.options)
-    return [Message("system", system), Message("user", "\n\n".join(parts) + "\n")]
-
-
-def judged(item: ItemRecord, answer: Answer) -> dict[str, Any]:
-    """Return how an answer is read and judged, as values of `AnsweredItem`."""
-    reading = read_answer(answer.text, item.options, answer.finish)
-    answered = reading.option if reading.outcome == "read" else None
-    ok = answered == item.right
-    outcome = reading.row_outcome if answered is None else "ok" if ok else "wrong"
-    wrong = "" if ok else f"answered {quoted(answered)}"
-    return {
-        "answered": answered,
-        "ok": ok,
-        "outcome": outcome,
-        "why_not": reading.reason if answered is None else wrong,
-        "finish": answer.finish,
-        "text": answer.text,
-    }
-
-
-def item_cells(
-    suite: str, items: Iterable[ItemRecord], models: Sequence[str], seed: int = 0
-) -> list[ItemCell]:
+def item_cells(suite: str, items: Iterable[ItemRecord], models: Sequence[str]) -> list[ItemCell]:
     """Return a cell for each item with options and each model.
 
     Args:
         suite: Name of the set.
         items: The items.
         models: Names of the models.
-        seed: Seed of the answers.
     """
     asked = [(each, _content(each)) for each in items if each.options]
     return [
-        ItemCell(SuiteKey(suite, content, {"model": model, "seed": seed}), item)
+        ItemCell(SuiteKey(suite, content, {"model": model, "seed": item.seed}), item)
         for model in models
         for item, content in asked
     ]

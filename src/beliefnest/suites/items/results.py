@@ -11,10 +11,11 @@ from beliefnest.errors import InputError
 from beliefnest.files import read_regular
 from beliefnest.llm.messages import Answer, Finish
 from beliefnest.scenarios.record_forms import read_lines
+from beliefnest.studies.items.asking import judged_answer
 from beliefnest.studies.items.exports import sha256
 from beliefnest.studies.items.item_set import read_description
 from beliefnest.studies.items.record import ItemRecord
-from beliefnest.suites.items.cells import AnsweredItem, judged
+from beliefnest.suites.items.cells import AnsweredItem
 from beliefnest.world.texts import quoted
 
 
@@ -174,7 +175,8 @@ def _faults(
     if not result.finish:
         read: Mapping[str, Any] = {"answered": None, "ok": False, "outcome": "no_answer"}
     else:
-        read = judged(item, Answer(result.text, finish=result.finish))
+        answer = Answer(result.text, finish=result.finish)
+        read = msgspec.structs.asdict(judged_answer(item, result.model, answer))
     for name in ("answered", "ok", "outcome"):
         stated = getattr(result, name)
         if stated != read[name]:
