@@ -362,8 +362,8 @@ def _observe_cells(
     """Take over the pending blocks that the owner of a node sees, where grids are dense.
 
     The loop visits the columns of the box that may be within the visible distance, and there the
-    words of 64 bits with a set bit. Words lie in the order of columns, so a word that two columns
-    share is visited once. `put` clears the bit of each block taken over.
+    bits of cells within this distance, in words of which columns share some. `_put` clears the bit
+    of each block taken over.
     """
     node = at[2]
     parent = whole(grids.parent[node])
@@ -383,25 +383,20 @@ def _observe_cells(
     x0 = upper(x0, first * _WORD // (ny * nz))
     x1 = lower(x1, (last * _WORD + _WORD) // (ny * nz) + 1)
     y0, y1 = _in_range(py - 1.0, far, y0, y1)
-    word = 0
     for x in range(x0, x1):
         for y in range(y0, y1):
             dx, dy = x + 1.5 - px, y + 1.5 - py
             near = math.sqrt(upper(far * far - dx * dx - dy * dy, 0.0))
             z0, z1 = _in_range(pz - 1.0, near, low, high)
             row = (x * ny + y) * nz
-            word = upper(word, (row + z0) // _WORD)
-            while word * _WORD < row + z1:
-                bits = grids.pending[node, word]
-                for place in range(_WORD if bits != 0 else 0):
-                    if (bits >> np.uint64(place)) & np.uint64(1):
-                        cell = word * _WORD + place
-                        i, j, k = there = grid_cell(space, cell)
-                        is_near = x0 < i <= x1 and y0 < j <= y1 and low < k <= high
-                        if is_near and sees_cell(space, scene, eye, there):
-                            state = whole(grids.blocks[parent, cell])
-                            _put_noted(space, grids, bases, changes, at, cell, state)
-                word += 1
+            for word in range((row + z0) // _WORD, (row + z1 + _WORD - 1) // _WORD):
+                start, stop = upper(row + z0, word * _WORD), lower(row + z1, word * _WORD + _WORD)
+                bits = grids.pending[node, word] >> np.uint64(start - word * _WORD)
+                for cell in range(start, stop if bits != 0 else start):
+                    there, bit = (x + 1, y + 1, cell - row + 1), bits >> np.uint64(cell - start)
+                    if bit & np.uint64(1) and sees_cell(space, scene, eye, there):
+                        state = whole(grids.blocks[parent, cell])
+                        _put_noted(space, grids, bases, changes, at, cell, state)
 
 
 @inner
