@@ -296,7 +296,10 @@ def test_an_interrupt_ends_everything_and_leaves_a_readable_folder(whole_group: 
         os.killpg(process.pid, 0)
 
 
-COMMANDS = [command.name or command.callback.__name__ for command in app.registered_commands]
+COMMANDS = [
+    command.name or command.callback.__name__.replace("_", "-")
+    for command in app.registered_commands
+]
 
 
 @pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)])
@@ -311,4 +314,4 @@ def test_the_help_lists_each_command_once_in_a_panel(capsys: pytest.CaptureFixtu
     assert run_command_line([]) == 0
     listed = capsys.readouterr().out.partition("Play:\n")[2]
     assert "Other commands" not in listed
-    assert sorted(re.findall(r"^  (\w+)  ", listed, re.MULTILINE)) == sorted(COMMANDS)
+    assert sorted(re.findall(r"^  ([\w-]+)  ", listed, re.MULTILINE)) == sorted(COMMANDS)

@@ -176,7 +176,7 @@ def test_policies_must_be_of_agents_and_exist() -> None:
     task = bn.Task.load(TASK)
     with pytest.raises(bn.InputError, match="zoe"):
         bn.Episode(task, {"zoe": "random"})
-    with pytest.raises(bn.UnknownNameError, match="search:ORDER"):
+    with pytest.raises(bn.UnknownNameError, match="did you mean search:1"):
         bn.Episode(task, {"anne": "serach:1"})
     with pytest.raises(bn.InputError, match="no order"):
         bn.Episode(task, {"anne": "search:99"})

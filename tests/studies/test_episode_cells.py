@@ -253,7 +253,7 @@ def test_a_model_that_cannot_be_asked_is_no_result(here: Path, monkeypatch: Any)
         ("policies: [{ours: {ann: random}}, {ours: {bob: random}}]", "two of the policies have"),
         (
             "policies: [{ours: {ann: {bob: random}}}]",
-            "study.yaml:2: policies[0]: expected a text, or a mapping such as {name: text}",
+            "study.yaml:2: policies[0].ours.ann: expected a text, got {'bob': 'random'}",
         ),
     ],
 )

@@ -4,7 +4,6 @@ from typing import Any
 
 from beliefnest.errors import UnknownNameError
 from beliefnest.importing import installed, installed_names, load
-from beliefnest.world.words import nearest_or_all
 
 __all__ = ["FILMS", "story_reader", "suite_names"]
 
@@ -30,5 +29,8 @@ def story_reader(name: str) -> Any:
     """
     entry = installed(_GROUP, name)
     if entry is None:
+        # It imports NumPy, and the list of suites is to be quick.
+        from beliefnest.world.words import nearest_or_all
+
         raise UnknownNameError(f"no suite {name!r}{nearest_or_all(name, suite_names())}")
     return load(entry, "suite")
