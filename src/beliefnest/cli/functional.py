@@ -42,6 +42,10 @@ def run_functional(options: ItemsOptions) -> int:
     design = check_functional(Study.load(options.study).design, str(options.study))
     families, seeds, jobs = list(families_of(design)), design.seeds, options.jobs
     model, repeats = options.model, design.repeats
+    own = {"functional.json", "functional.png", *(each.folder for each in families)}
+    there = {each.name for each in options.folder.glob("*")}
+    if others := there - own:
+        raise InputError(f"{options.folder} holds other files ({min(others)}); name another folder")
     with playing(options.study.stem, options.folder) as (folder, say):
         done = [certified(each, seeds, folder / each.folder, jobs, say) for each in families]
         pairs = [

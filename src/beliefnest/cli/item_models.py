@@ -31,8 +31,8 @@ def run_models(options: ItemsOptions) -> int:
         BeliefNestError: The input is wrong, or an item has no result.
     """
     items, folder = PublishedSet.read(options.study), options.folder
-    models = [each.strip() for each in (options.models or "").split(",") if each.strip()]
-    if not models or len({*models}) < len(models):
+    models = [each.strip() for each in (options.models or "").split(",")]
+    if not all(models) or len({*models}) < len(models):
         raise InputError(f"--models is {options.models!r}; name each model once, with commas")
     cells = item_cells(items.name, items.choices, models)
     about = {"suites": [items.name], "models": models, "version": items.version}
@@ -55,7 +55,9 @@ def run_verify_results(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The set or the file cannot be read.
     """
-    items = PublishedSet.read(options.out or options.study)
+    if options.models or options.out:
+        raise InputError("--verify-results takes the folder of a set alone, without --models or -o")
+    items = PublishedSet.read(options.study)
     file = options.verify_results or options.study / RESULTS
     checked = check_results(items, file)
     lines = [
@@ -100,7 +102,8 @@ def _print(
 
 
 def _table(groups: Sequence[Mapping[str, Any]]) -> Table:
-    numbers = ("order", "items", "right", "accuracy", "95 %", "chance", "tokens", "cost")
+    spent = ("tokens", "cost") if any(group["tokens"] for group in groups) else ()
+    numbers = ("order", "items", "right", "accuracy", "95 %", "chance", *spent)
     table = result_table("model", *numbers, "not answered", right=numbers)
     for group in groups:
         judged = group["judged"]
@@ -112,8 +115,7 @@ def _table(groups: Sequence[Mapping[str, Any]]) -> Table:
             f"{group['accuracy']:.1%}" if judged else "-",
             f"{group['low']:.0%} to {group['high']:.0%}" if judged else "-",
             "-" if group["chance"] is None else f"{group['chance']:.0%}",
-            f"{group['tokens']:,}",
-            cost_text(group["cost"]),
+            *([f"{group['tokens']:,}", cost_text(group["cost"])] if spent else []),
             unanswered_words(group),
         )
     return table

@@ -24,7 +24,7 @@ def run_items(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The study or the folder is wrong, or a script failed.
     """
-    if options.models or options.verify_results:
+    if options.models is not None or options.verify_results:
         from beliefnest.cli.item_models import run_models, run_verify_results
 
         if options.verify_results:
@@ -36,6 +36,8 @@ def run_items(options: ItemsOptions) -> int:
         return run_functional(options)
     if options.model is not None:
         raise InputError("--model answers and plays with --functional; give both, or none")
+    if options.study.is_dir():
+        raise InputError(f"{options.study} is a folder; add --models to ask models its items")
     set_options = _set_options(options)
     study = Study.load(options.study)
     with progress_on(options.study.stem) as on_progress:

@@ -41,7 +41,7 @@ def _parts(options: SearchItemsOptions, report: SearchReport) -> Iterator[Printe
         yield f"{model}: {'; '.join(weak) or 'no weakness found'}"
     size = f"{counted(len(report.tested), 'contrast')} of {report.contrasts} tested"
     cost = f"{report.usage.tokens:,} tokens, {report.usage.cost or 0.0:.2f} US dollars"
-    yield f"{options.out}: {counted(report.asked, 'question')}, {size}, {cost}"
+    yield f"{options.out}: {counted(report.asked, 'question')}, {size}; whole folder: {cost}"
 
 
 def _table(model: str, tests: Sequence[JudgedContrast]) -> Table:

@@ -112,7 +112,8 @@ def test_results_are_checked_against_their_set(answered, capsys):
         {"version": "2"},
     ]
     bad = [{**line, **change} for line, change in zip(lines, changes, strict=False)]
-    results.write_text("".join(json.dumps(each) + "\n" for each in [*bad, lines[5], lines[5]]))
+    rest = [json.dumps(each) for each in [*bad, {**lines[5], "note": "mine"}, lines[5]]]
+    results.write_text("\n".join([*rest, "{not json", "[1, 2]", rest[0][:40]]))
     assert run_command_line([*command, str(results)]) == 1
     report = json.loads(capsys.readouterr().out)
     words = [
@@ -122,8 +123,8 @@ def test_results_are_checked_against_their_set(answered, capsys):
         "digest is '0'",
         "version is '2'",
     ]
-    words.append("has a result of i0 before")
-    numbers = [1, 2, 3, 4, 5, 7]
+    words = [*["is no result"] * 3, *words, "has a result of i0 before"]
+    numbers = [8, 9, 10, 1, 2, 3, 4, 5, 7]
     for fault, number, word in zip(report["faults"], numbers, words, strict=True):
         assert f":{number}: " in fault and word in fault
     assert report["missing"] == {lines[0]["model"]: 5, "first-option": 4}
@@ -136,7 +137,10 @@ def test_results_are_checked_against_their_set(answered, capsys):
         (["--models", "first-option"], "with -o"),
         (["--models", "first-option,first-option", "-o", "OUT"], "each model once"),
         (["--models", "nobody", "-o", "OUT"], "no model 'nobody'"),
+        (["--models", "first-option,", "-o", "OUT"], "each model once"),
         (["--verify-results", "nowhere.jsonl"], "no file of results"),
+        (["--verify-results", "nowhere.jsonl", "-o", "OUT"], "alone"),
+        (["-o", "OUT"], "add --models"),
     ],
 )
 def test_wrong_input_is_refused(options, words, tmp_path, capsys):
@@ -144,3 +148,12 @@ def test_wrong_input_is_refused(options, words, tmp_path, capsys):
     own = [each.replace("OUT", str(tmp_path / "out")) for each in options]
     assert run_command_line(["items", str(tmp_path / "set"), *own]) == 2
     assert words in capsys.readouterr().err
+
+
+def test_a_model_that_fails_is_told(tmp_path, capsys):
+    ItemSet("own", ITEMS, ()).write(tmp_path / "set")
+    model = tmp_path / "broken.py"
+    model.write_text(MODEL.replace("text = messages[-1].text", 'raise ValueError("oops")'))
+    command = ["items", str(tmp_path / "set"), "-o", str(tmp_path / "out"), "--models"]
+    assert run_command_line([*command, f"{model}:Careful"]) == 3
+    assert "oops" in capsys.readouterr().err

@@ -15,6 +15,9 @@ Solver = Callable[[ItemRecord], str | None]
 FOLDS = 5
 """Number of folds of the classifier of words if all items are of one family."""
 
+_ROUNDING = 1e-9
+"""Difference of two rates that only comes from how their numbers are added."""
+
 _COUNTED = ("family", "scenario", "condition", "kind", "order", "checked")
 
 
@@ -143,7 +146,7 @@ def _scored(items: Sequence[ItemRecord], solve: Solver) -> dict[str, Any]:
         "low": low,
         "high": high,
         "chance": chance,
-        "at_chance": low <= chance <= high,
+        "at_chance": low - _ROUNDING <= chance <= high + _ROUNDING,
     }
 
 

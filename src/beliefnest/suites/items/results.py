@@ -8,7 +8,7 @@ from typing import Any, Literal
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular
+from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.messages import Answer, Finish
 from beliefnest.scenarios.record_forms import read_lines
 from beliefnest.studies.items.asking import judged_answer
@@ -19,8 +19,8 @@ from beliefnest.suites.items.cells import AnsweredItem
 from beliefnest.world.texts import quoted
 
 
-class ItemResult(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Line of a file of results.
+class ItemResult(msgspec.Struct, frozen=True):
+    """Line of a file of results; further fields are notes.
 
     Attributes:
         set: Name of the set.
@@ -84,8 +84,9 @@ class PublishedSet:
 
 
 def results_of(items: PublishedSet, rows: Iterable[Mapping[str, Any]]) -> bytes:
-    """Return the file of results of the rows that a set gave; rows without a verdict are left."""
-    answers = (msgspec.convert(row, AnsweredItem) for row in rows if row["ok"] is not None)
+    """Return the file of results of the rows that a set gave, without those of failed cells."""
+    played = (row for row in rows if row["finish"] is not None)
+    answers = (msgspec.convert(row, AnsweredItem) for row in played)
     of_set = {"set": items.name, "version": items.version, "digest": items.digest}
     kept = ("id", "model", "answered", "ok", "outcome", "finish", "text")
     lines = ({**of_set, **{name: getattr(each, name) for name in kept}} for each in answers)
@@ -115,17 +116,22 @@ def check_results(items: PublishedSet, file: Path) -> CheckedResults:
         file: File of results.
 
     Raises:
-        InputError: The file cannot be read, or a line is no result.
+        InputError: The file cannot be read, or has no results.
     """
     if not file.is_file():
         raise InputError(f"there is no file of results at {file}")
-    results = read_lines(file, ItemResult)
+    faults: list[str] = []
+    results: dict[int, ItemResult] = {}
+    for number, line in enumerate(read_regular(file).split(b"\n"), 1):
+        try:
+            results |= {number: decode_json(line, ItemResult)} if line.strip() else {}
+        except msgspec.MsgspecError as error:
+            faults.append(f"{file}:{number}: is no result: {error}")
     if not results:
         raise InputError(f"{file} has no results")
     by_id = {each.id: each for each in items.choices}
-    faults: list[str] = []
-    sound: dict[str, dict[str, ItemResult]] = {each.model: {} for each in results}
-    for number, each in enumerate(results, 1):
+    sound: dict[str, dict[str, ItemResult]] = {each.model: {} for each in results.values()}
+    for number, each in results.items():
         own = [*_faults(items, by_id, each)]
         if each.id in sound[each.model]:
             own.append(f"{each.model} has a result of {each.id} before")
@@ -168,6 +174,8 @@ def _faults(
         if own != theirs:
             yield f"{name} is {quoted(theirs)}, and this set has {quoted(own)}"
             return
+    if not result.model.strip():
+        yield "model is empty; give its name"
     item = by_id.get(result.id)
     if item is None:
         yield f"the set has no item {quoted(result.id)} with options"
