@@ -296,10 +296,7 @@ def test_an_interrupt_ends_everything_and_leaves_a_readable_folder(whole_group: 
         os.killpg(process.pid, 0)
 
 
-COMMANDS = [
-    command.name or command.callback.__name__.replace("_", "-")
-    for command in app.registered_commands
-]
+COMMANDS = [command.name or command.callback.__name__ for command in app.registered_commands]
 
 
 @pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)])

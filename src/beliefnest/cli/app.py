@@ -359,7 +359,7 @@ def items(options: ItemsOptions) -> int:
     return run_items(options)
 
 
-@app.command(rich_help_panel=_PLAY)
+@app.command("search-items", rich_help_panel=_PLAY)
 @with_options(SearchItemsOptions)
 def search_items(options: SearchItemsOptions) -> None:
     """Search variations of a study that a model fails, and test what makes them hard."""
