@@ -5,6 +5,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+from tests.profiles import NIGHTLY
 
 from beliefnest.cli.app import run_command_line
 
@@ -22,10 +23,12 @@ def test_the_page_leads_to_a_released_set(
     Path("study.yaml").write_text(STUDY, encoding="utf-8")
     commands = re.findall(r"^\$ beliefnest (.*)$", PAGE, re.MULTILINE)
     assert len(commands) == 5
-    for command in commands:
-        assert run_command_line(shlex.split(command)) == 0
+    for command in map(shlex.split, commands):
+        # It plays every scene once more; other tests make smaller sets again.
+        if "--verify" not in command or NIGHTLY:
+            assert run_command_line(command) == 0
     printed = capsys.readouterr().out
-    assert "made again with the same bytes" in printed
+    assert ("made again with the same bytes" in printed) is NIGHTLY
     (fault,) = (line.split()[0] for line in printed.splitlines() if line.split()[-1:] == ["NO"])
     assert fault == "most_event"
     exec(compile(CODE, "benchmark.md", "exec"), {"__name__": "example"})
