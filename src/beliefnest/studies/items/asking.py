@@ -1,13 +1,12 @@
 """Items that models are asked as text; their answers."""
 
 from string import ascii_uppercase
-from typing import Literal
 
 import jinja2
 import msgspec
 
 from beliefnest.llm.failures import UnusableAnswerError
-from beliefnest.llm.messages import Answer, Finish, Message, Model, Sampling
+from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.llm.reading_answers import read_answer
 from beliefnest.prompts import built_in_template
 from beliefnest.studies.items.record import ItemRecord
@@ -37,7 +36,7 @@ class ItemAnswer(msgspec.Struct, frozen=True, kw_only=True):
     ok: bool
     outcome: str
     why_not: str
-    finish: Finish | Literal[""]
+    finish: str
     text: str
     tokens: int = 0
     cost: float | None = None

@@ -9,49 +9,29 @@ import msgspec
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.plan.cells import digest
 from beliefnest.plan.terms import PlayStage
-from beliefnest.studies.items.asking import ask_item
+from beliefnest.studies.items.asking import ItemAnswer, ask_item
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.suites.playing import SuiteKey, suite_kind
 
 
-class AnsweredItem(msgspec.Struct, frozen=True, kw_only=True):
-    """Answer of a model to an item.
+class AnsweredItem(ItemAnswer, frozen=True, kw_only=True):
+    """Row of the table: an answer, with what the set says of its item.
 
     Attributes:
-        id: Id of the item.
-        model: Name of the model.
         family: Family of the item.
         order: Order of the item.
         kind: Kind of the item.
         chance: Probability that a guess is right.
         question: The question.
         expected: The right answer.
-        answered: Option that the model named; None: none, or several.
-        ok: True if that is the right one; None: the model was not asked.
-        outcome: As in the tables of studies, see `OUTCOMES`.
-        why_not: Why the answer is not right; empty: it is.
-        finish: Reason for the end of the answer.
-        text: The whole answer.
-        tokens: Number of tokens sent and received.
-        cost: Cost in US dollars; None: the price is not known.
     """
 
-    id: str
-    model: str
     family: str
     order: int
     kind: str
     chance: float | None
     question: str
     expected: str
-    answered: str | None = None
-    ok: bool | None = None
-    outcome: str = ""
-    why_not: str = ""
-    finish: str = ""
-    text: str = ""
-    tokens: int | None = None
-    cost: float | None = None
 
 
 ITEM_KIND = suite_kind(
