@@ -194,7 +194,7 @@ def _reproduce_run(result: StudyRecord, again: Path, *, trust: bool) -> Reproduc
         skills=settings.get("skills"),
         max_output_tokens=settings.get("max_output_tokens"),
     )
-    # What a command prints is not the result here: the cells in the folder are.
+    # The result is in the folder's cells, so that the command's print is dropped.
     with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(ModelError):
         run_scenarios(options)
     ended = [cell for cell, content in _contents(result) if content["error"] is None]

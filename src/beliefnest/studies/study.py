@@ -456,7 +456,7 @@ class Study:
         if not is_amount(held_out) or held_out >= 1:
             raise InputError(f"held_out is {quoted(held_out)}; give a share of at least 0, below 1")
         say = on_item or _say_nothing_of_items
-        design, cells = self._scenarios(lambda done, total: say("choosing", done, total))
+        design, cells = self._scenarios(lambda done, total: say("preparing scenes", done, total))
         refuse_claims(design.setting)
         played = self._made or made_items(cells, self._documents, on_item)
         names = dict.fromkeys(map(item_name, cells))

@@ -36,7 +36,7 @@ class Contrast:
     Attributes:
         factor: Name of the factor.
         hard: Level that may be hard.
-        others: FactorLevels of easier twins: the next one if levels are numbers, else all others.
+        others: Levels that twins may have: the next lower or higher number, else all others.
     """
 
     factor: str
@@ -119,7 +119,7 @@ class ItemSpace:
         drawn = dict(next(self._draws[key]).values)
         if isinstance(self.design.variations, int):
             return drawn
-        # What a study lists is never drawn otherwise.
+        # Parameters that the study lists have no other values.
         chance = random.Random(json.dumps([seed, drawn], sort_keys=True))
         listed = {name: chance.choice(list(values)) for name, values in self._lists.items()}
         declared = declared_in(document)

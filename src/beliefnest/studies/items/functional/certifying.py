@@ -170,7 +170,7 @@ def families_of(design: EpisodeDesign) -> Iterator[TaskFamily]:
 def certified(
     family: TaskFamily, seeds: Sequence[int], folder: Path, jobs: int, on_progress: OnStudyProgress
 ) -> Certificate:
-    """Play a family by search, by rules and by all courses, and return what was found.
+    """Play a family by search, by rules and by all courses, and return its certificate.
 
     Args:
         family: The family.
@@ -244,7 +244,7 @@ def best_course(siblings: Sequence[Task], order: int) -> int:
     lists = [_Listing(order) for _ in siblings]
     for task, listing in zip(siblings, lists, strict=True):
         _play(task, listing)
-    programs = dict.fromkeys(("", *lists[0].programs, *(each.found for each in lists)))
+    programs = dict.fromkeys(("", *lists[0].programs, *(each.course for each in lists)))
     return max(sum(_play(task, _Course(program)) for task in siblings) for program in programs)
 
 
@@ -259,7 +259,7 @@ class _Listing:
 
     order: int
     programs: Sequence[str] = ()
-    found: str = ""
+    course: str = ""
 
     def act(self, view: AgentView) -> str:
         program = Search(self.order).act(view)
@@ -267,7 +267,7 @@ class _Listing:
             mind, goals = view.imagine(self.order), [view.goal]
             claims = claims_of_mind(mind, goals, lies=True) if view.may_speak else ()
             calls = [*calls_of(mind, view.agent, goals), *map(said, claims)]
-            self.programs, self.found = [program_of([each]) for each in calls], program
+            self.programs, self.course = [program_of([each]) for each in calls], program
         return program
 
 
