@@ -295,7 +295,7 @@ class Forest:
         if first is None:
             yield from self._events.before(self.table.path(node))
         since = first or 0
-        numbers = (np.flatnonzero(self.perceived_events.of(node, count)[since:]) + since).tolist()
+        numbers = (np.flatnonzero(self.perceived_events.of(node, count, since)) + since).tolist()
         events = self._events.events(numbers[-1] + 1) if numbers else ()
         for number in numbers:
             tick, event = events[number]

@@ -607,6 +607,12 @@ class NodeTable:
         """Return True if an agent's pose is current in a node."""
         return bool(self._rows["current"][node, agent])
 
+    def in_sight(self, node: int) -> Iterator[tuple[int, int]]:
+        """Yield the numbers of the agents whose poses are current in a node, and these poses."""
+        poses = self._rows["pose"][node]
+        for agent in np.flatnonzero(self._rows["current"][node] & (poses >= 0)).tolist():
+            yield agent, int(poses[agent])
+
     def present(self) -> npt.NDArray[np.bool_]:
         """Return by node if its owner is present in its parent node (semantics, section 5.1)."""
         present = np.ones(self.count, dtype=np.bool_)

@@ -25,14 +25,13 @@ class PerceivedEventTable:
         column &= ~bit
         column |= perceived.astype(np.uint8) * bit
 
-    def of(self, node: int, count: int) -> npt.NDArray[np.bool_]:
-        """Return bool (count,): which of the first `count` events a node perceived."""
-        if node >> 3 >= self._bits.shape[1]:
-            return np.zeros(count, dtype=np.bool_)
-        perceived: npt.NDArray[np.bool_] = (
-            self._bits[:count, node >> 3] & np.uint8(128 >> (node & 7))
-        ) > 0
-        return np.concatenate([perceived, np.zeros(count - len(perceived), dtype=np.bool_)])
+    def of(self, node: int, count: int, first: int = 0) -> npt.NDArray[np.bool_]:
+        """Return which events a node perceived, from number `first` to before `count`."""
+        perceived = np.zeros(max(0, count - first), dtype=np.bool_)
+        if node >> 3 < self._bits.shape[1]:
+            noted = self._bits[first:count, node >> 3]
+            perceived[: len(noted)] = (noted & np.uint8(128 >> (node & 7))) > 0
+        return perceived
 
     def _widen(self, events: int, nodes: int) -> None:
         height, width = self._bits.shape

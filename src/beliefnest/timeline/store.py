@@ -268,6 +268,8 @@ class Journal:
         """
         timeline = self._timeline(key)
         check_append(timeline.info, entries, head)
+        if not entries and head == timeline.info.head:
+            return
         recent = (*timeline.recent, *entries)
         old = len(recent)
         if not self._has_file:
@@ -461,7 +463,8 @@ class Journal:
     @property
     def _timelines(self) -> dict[TimelineKey, _Timeline]:
         """All timelines in order of creation, as the file has them now."""
-        if self._has_file:
+        # Nobody else writes a file that is open for writing.
+        if self._has_file and (self._version is None or not self._database.writable):
             # The number changes if another process has written the file.
             version = self._database.row("PRAGMA data_version")
             if version != self._version:

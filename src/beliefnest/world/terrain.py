@@ -498,6 +498,8 @@ class Terrain:
         )
         offsets = [np.empty((0, 3), dtype=np.intp)]
         numbers = np.flatnonzero(mine != theirs)
+        if not len(numbers):
+            return offsets[0]
         # Many places have the same pair of chunks, which are compared once.
         pairs = self.rows[numbers].astype(np.int64) * len(other.chunks) + other.rows[numbers]
         each, places = _distinct(pairs, len(self.chunks) * len(other.chunks))

@@ -9,7 +9,6 @@ from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.event_words import announced
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import AgentState
 from beliefnest.worlds.protocol import Sensed
 
 
@@ -85,14 +84,9 @@ class Sensing:
         return with_chests_at(context.registry, context.box, seen.terrain, places)
 
     def _sensed(self, seen: NodeView, entries: int) -> Sensed:
-        agents = {
-            name: AgentState(
-                each.position, each.yaw, each.pitch, each.on_ground, each.equipment or {}
-            )
-            for name, each in seen.agents.items()
-            if each.current and each.position is not None and name != self._agent
-        }
         before, self._events = self._events, seen.count_of_events
         events = () if before is None else seen.events_since(before)
         news = announced(events, self._agent)
-        return Sensed(self._blocks(seen, entries), agents, dict(seen.items), news, seen.texts)
+        return Sensed(
+            self._blocks(seen, entries), seen.agents_in_sight(), dict(seen.items), news, seen.texts
+        )

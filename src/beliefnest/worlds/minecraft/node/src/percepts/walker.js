@@ -48,7 +48,7 @@ class Walker {
 
   /** Return the block that physics assumes when the pathfinder simulates steps in advance. */
   trodden (place) {
-    const [x, y, z] = [place.x, place.y, place.z].map(Math.floor)
+    const [x, y, z] = [Math.floor(place.x), Math.floor(place.y), Math.floor(place.z)]
     if (!this.known.lacks(x, y, z)) return this.known.blockIn(x, y, z)
     if (y >= this.ground) return null
     return Object.assign(Object.create(this.floor), { position: place.floored() })
@@ -59,7 +59,7 @@ class Walker {
    * @param {boolean} isBelow true if the search asks for the block below the feet
    */
   unknownAt (x, y, z, isBelow) {
-    const isFelt = this.felt.has([x, y, z].join())
+    const isFelt = this.felt.size > 0 && this.felt.has([x, y, z].join())
     if (!isFelt && !this.known.lacks(x, y, z)) return undefined
     const position = this.view.entity.position.clone().set(x, y, z)
     return {
