@@ -33,7 +33,7 @@ QUICK = (
     ),
     *(
         f"tests/world/test_{name}.py"
-        for name in ("claims", "event_words", "registry", "terrain", "texts")
+        for name in ("claims", "compression", "event_words", "registry", "terrain", "texts")
     ),
     *(f"tests/worlds/test_{name}.py" for name in ("double_chests", "same_deeds")),
     "tests/worlds/scripted/test_world.py",

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-import zstandard
 
 from beliefnest.timeline.database import checksum
+from beliefnest.world.compression import compressed, decompressed
 
 __all__ = ["change_checkpoint", "change_entries", "change_rows", "change_start"]
 
@@ -42,10 +42,10 @@ def change_entries(path: Path, change: Change, which: str = "body") -> None:
     def changed(row: dict[str, Any]) -> dict[str, Any]:
         body = row[which]
         if row["compressed"]:
-            body = zstandard.ZstdDecompressor().decompress(body)
+            body = decompressed(body, 2**26)
         body = _MSGPACK.encode(change(_MSGPACK.decode(body, strict=False)))
         if row["compressed"]:
-            body = zstandard.ZstdCompressor().compress(body)
+            body = compressed(body, 3)
         return {**row, which: body}
 
     change_rows(path, "piece", "1" if which == "body" else "compressed", changed)
@@ -55,8 +55,8 @@ def change_checkpoint(path: Path, change: Change) -> None:
     """Change the body of all checkpoints, given as a plain dict."""
 
     def changed(row: dict[str, Any]) -> dict[str, Any]:
-        body = _MSGPACK.decode(zstandard.ZstdDecompressor().decompress(row["body"]))
-        return {**row, "body": zstandard.ZstdCompressor().compress(_MSGPACK.encode(change(body)))}
+        body = _MSGPACK.decode(decompressed(row["body"], 2**26))
+        return {**row, "body": compressed(_MSGPACK.encode(change(body)), 3)}
 
     change_rows(path, "keyframe", "1", changed)
 
@@ -80,6 +80,6 @@ def node_changed(body: dict[str, Any], change: Change) -> dict[str, Any]:
     """Return the body of a checkpoint with all of its nodes changed."""
     nodes: list[Sequence[Any]] = []
     for place, packed in body["nodes"]:
-        node = _MSGPACK.decode(zstandard.ZstdDecompressor().decompress(packed))
-        nodes.append((place, zstandard.ZstdCompressor().compress(_MSGPACK.encode(change(node)))))
+        node = _MSGPACK.decode(decompressed(packed, 2**26))
+        nodes.append((place, compressed(_MSGPACK.encode(change(node)), 3)))
     return {**body, "nodes": nodes}

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import zstandard
 from tests.hostile.forging import (
     change_checkpoint,
     change_entries,
@@ -23,6 +22,7 @@ from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.timeline import codec
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.store import Journal
+from beliefnest.world.compression import compressed, decompressed
 
 ROOM = {
     "name": "room",
@@ -299,9 +299,9 @@ def test_a_chunk_that_tells_a_plausible_lie_is_refused(run, name):
 
 def test_agents_that_a_chunk_lies_about_are_refused(run):
     def moved(row):
-        known = codec.decode_agents(zstandard.ZstdDecompressor().decompress(row["agents"]))
+        known = codec.decode_agents(decompressed(row["agents"], 2**26))
         known["ann"] = replace(known["ann"], health=known["ann"].health - 1)
-        return {**row, "agents": zstandard.ZstdCompressor().compress(codec.encode(known))}
+        return {**row, "agents": compressed(codec.encode(known), 3)}
 
     change_rows(run, "piece", "compressed", moved)
     with RecordedNest.read(run) as nest, pytest.raises(BeliefNestError, match="other agents than"):
@@ -309,7 +309,7 @@ def test_agents_that_a_chunk_lies_about_are_refused(run):
 
 
 def test_a_chunk_that_unpacks_to_any_size_is_refused(run):
-    bomb = zstandard.ZstdCompressor().compress(bytes(1_500_000_000))
+    bomb = compressed(bytes(1_500_000_000), 3)
     change_rows(run, "piece", "compressed", lambda row: {**row, "body": bomb})
     assert "would unpack to more than" in refused(run)
 

@@ -10,6 +10,10 @@ import beliefnest as bn
 import beliefnest.frames
 from beliefnest.env import parallel_env
 from beliefnest.errors import MissingExtraError
+from beliefnest.pictures.figure import Figure
+from beliefnest.pictures.marks import Drawing
+
+BLANK = Figure(lambda points: Drawing(points, points, (), ""), 84, "")
 
 
 def tasks_of_inspect(study, folder):
@@ -25,6 +29,7 @@ def tasks_of_inspect(study, folder):
         ("matplotlib.figure", "plot", lambda study, folder: study.run(folder / "s").plot()),
         ("distributed", "dask", lambda study, folder: study.run(folder / "new", 2, "dask")),
         ("ray.util.joblib", "ray", lambda study, folder: study.run(folder / "new", 2, "ray")),
+        ("reportlab.pdfbase", "pdf", lambda study, folder: BLANK.save(folder / "f.pdf")),
         ("pettingzoo", "pettingzoo", lambda study, folder: parallel_env("sally-anne")),
         ("inspect_ai", "inspect", tasks_of_inspect),
     ],

@@ -7,7 +7,6 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 import pytest
-import zstandard
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import at_night
@@ -16,6 +15,7 @@ from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.journal import Edit
 from beliefnest.world import terrain
+from beliefnest.world.compression import compressed, decompressed
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, DroppedItem, Event, EventKind
@@ -242,10 +242,10 @@ def test_chunks_are_joined_if_the_box_has_become_one_chunk(monkeypatch):
 @pytest.mark.usefixtures("in_chunks")
 def test_damaged_chunks_are_refused():
     good = msgspec.msgpack.decode(codec.encode_snapshot(cut_snapshot(random_grid(3))))
-    numbers = np.frombuffer(zstandard.decompress(good["blocks"]), dtype="<i4")
+    numbers = np.frombuffer(decompressed(good["blocks"], 2**20), dtype="<i4")
 
     def packed(changed):
-        return zstandard.compress(changed.astype("<i4").tobytes())
+        return compressed(changed.astype("<i4").tobytes(), 3)
 
     beyond, below = numbers.copy(), numbers.copy()
     beyond[0], below[1] = good["chunks"], -1
@@ -254,7 +254,7 @@ def test_damaged_chunks_are_refused():
         ("do not fill", {"chunks": -1}),
         ("does not fill", {"chunks": 0}),
         ("do not fill", {"blocks": good["blocks"][:-3]}),
-        ("do not fill", {"blocks": b"no zstandard"}),
+        ("do not fill", {"blocks": b"no frame"}),
         ("do not fill", {"blocks": packed(numbers[:-1])}),
         ("not there", {"blocks": packed(beyond)}),
         ("not there", {"blocks": packed(below)}),

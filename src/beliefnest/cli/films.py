@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from rich.table import Table
 from beliefnest.cli.console import Printed, print_report, result_table
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.cli.playing import playing, status_of, write_tables
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.pictures.scatter import Dot, ScatterPanel, ScatterRow, scatter_figure
 from beliefnest.suites import FILMS
 from beliefnest.suites.films.agreement import PUBLISHED, JudgesAgreement, agreement, interval
@@ -147,15 +148,16 @@ def _judgment(film: Film, rows: Sequence[FilmRow]) -> dict[str, Any]:
 
 
 def _write(folder: Path, options: SuiteOptions, judged: JudgedFilms) -> list[str]:
-    """Write the figure, if people judged, and return its files."""
+    """Write the figure, if people judged, and return its files: a PDF only with reportlab."""
     written = []
     rows = _scatter_rows(judged, options.seed)
     if rows:
         figure = scatter_figure(rows, f"Model and people, {options.path.name}")
         for ending in ("svg", "pdf", "png"):
             file = folder / f"scatter.{ending}"
-            figure.save(file)
-            written.append(str(file))
+            with suppress(MissingExtraError):
+                figure.save(file)
+                written.append(str(file))
     return written
 
 

@@ -94,6 +94,7 @@ class Figure:
 
         Raises:
             InputError: The suffix or the size is invalid, or the file cannot be written.
+            MissingExtraError: It is a PDF, and reportlab is not installed.
         """
         file = Path(path)
         ending = file.suffix.lower()

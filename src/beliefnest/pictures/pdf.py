@@ -3,6 +3,7 @@
 import io
 from typing import Any
 
+from beliefnest.errors import MissingExtraError
 from beliefnest.pictures.lettering import font_bytes, lettered
 from beliefnest.pictures.marks import (
     Circle,
@@ -21,11 +22,19 @@ _NAMES = {False: "LiberationSans", True: "LiberationSans-Bold"}
 
 
 def pdf_bytes(drawing: Drawing) -> bytes:
-    """Return the PDF of a drawing, one page of its size; equal drawings give equal bytes."""
-    from reportlab.pdfbase import pdfmetrics
-    from reportlab.pdfbase.ttfonts import TTFont
-    from reportlab.pdfgen.canvas import Canvas
+    """Return the PDF of a drawing, one page of its size; equal drawings give equal bytes.
 
+    Raises:
+        MissingExtraError: reportlab is not installed.
+    """
+    try:
+        from reportlab.pdfbase import pdfmetrics
+        from reportlab.pdfbase.ttfonts import TTFont
+        from reportlab.pdfgen.canvas import Canvas
+    except ImportError:
+        raise MissingExtraError(
+            "PDF needs reportlab", "pdf", ", or save the figure as .svg or .png"
+        ) from None
     for bold, name in _NAMES.items():
         if name in pdfmetrics.getRegisteredFontNames():
             continue

@@ -58,7 +58,7 @@ class TerrainEntry(_Entry, frozen=True):
     chunks: Annotated[
         int, msgspec.Meta(ge=0, description="Number of different cubes; 0: it is not cut.")
     ]
-    cells: Annotated[str, note("Numbers of states, by zstandard and in Base64.")]
+    cells: Annotated[str, note("Numbers of states, by Zstandard and in Base64.")]
 
 
 class ContainerEntry(_Entry, frozen=True):

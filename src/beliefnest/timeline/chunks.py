@@ -11,13 +11,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import msgspec
-import zstandard
 
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.bounds import RunBounds
 from beliefnest.timeline.database import Database, damage
 from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_found
+from beliefnest.world.compression import compressed, decompressed
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
@@ -25,8 +25,7 @@ CHUNK_ENTRIES = 128
 """Entries of one compressed chunk; larger chunks hardly compress better and read more slowly."""
 
 _COMPRESSION = 1
-"""Compression level of zstandard. Higher levels gain nothing on poses, whose last digits are noise.
-"""
+"""Compression level. Higher levels gain nothing on poses, whose last digits are noise."""
 
 
 _LARGEST = 2**26
@@ -64,23 +63,17 @@ class Chunks:
     def __init__(self, database: Database) -> None:
         self._database = database
         self.bounds: RunBounds | None = None
-        self._packer = zstandard.ZstdCompressor(level=_COMPRESSION)
-        self._unpacker = zstandard.ZstdDecompressor()
 
     def compressed(self, body: bytes) -> bytes:
         """Compress bytes."""
-        return self._packer.compress(body)
+        return compressed(body, _COMPRESSION)
 
     def decompressed(self, body: bytes, largest: int = _LARGEST) -> bytes:
         """Decompress bytes; StoreError if they are damaged or would be too large."""
-        path = self._database.path
         try:
-            # A stream of unknown size would be unpacked up to any size.
-            if 0 <= zstandard.frame_content_size(body) <= largest:
-                return self._unpacker.decompress(body)
-        except zstandard.ZstdError as fault:
-            raise damage(path, str(fault)) from fault
-        raise damage(path, f"a part would unpack to more than {largest:,} bytes")
+            return decompressed(body, largest)
+        except ValueError as fault:
+            raise damage(self._database.path, str(fault)) from fault
 
     def add(
         self,

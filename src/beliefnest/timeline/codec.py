@@ -23,7 +23,7 @@ from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, 
 T = TypeVar("T")
 
 _COMPRESSION = 1
-"""Compression level of zstandard, as for the entries of timelines (see `timeline/chunks.py`)."""
+"""Compression level, as for the entries of timelines (see `timeline/chunks.py`)."""
 
 
 class _FrameEntry(msgspec.Struct, tag="frame", array_like=True):

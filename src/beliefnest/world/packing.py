@@ -1,6 +1,6 @@
 """Terrain as compressed bytes, for files.
 
-The bytes hold 32-bit integers, little endian, compressed by zstandard: of a terrain of one chunk
+The bytes hold 32-bit integers, little endian, compressed by Zstandard: of a terrain of one chunk
 the states of all cells, x slowest and z fastest; of others the number of the chunk at each place,
 and then the states of each different chunk (see `world.terrain`).
 """
@@ -8,8 +8,8 @@ and then the states of each different chunk (see `world.terrain`).
 import math
 
 import numpy as np
-import zstandard
 
+from beliefnest.world.compression import compressed, decompressed
 from beliefnest.world.terrain import VOLUME, Lattice, Terrain
 
 
@@ -23,7 +23,7 @@ def packed(terrain: Terrain, level: int) -> tuple[bytes, int]:
     plain = terrain.canonical()
     parts = [chunk.ravel() for chunk in plain.chunks]
     numbers = np.concatenate(parts if plain.is_dense else [plain.rows, *parts])
-    data = zstandard.ZstdCompressor(level=level).compress(numbers.astype("<i4").tobytes())
+    data = compressed(numbers.astype("<i4").tobytes(), level)
     return data, 0 if plain.is_dense else len(plain.chunks)
 
 
@@ -39,13 +39,12 @@ def unpacked(data: bytes, shape: tuple[int, int, int], chunks: int) -> Terrain:
         ValueError: The bytes hold no such terrain.
     """
     places = math.prod(Lattice(shape, is_one=False).counts)
-    size = places + chunks * VOLUME if chunks else math.prod(shape)
+    size = 4 * (places + chunks * VOLUME if chunks else math.prod(shape))
     try:
-        is_whole = 0 <= chunks <= places and zstandard.frame_content_size(data) == 4 * size
-        body = zstandard.ZstdDecompressor().decompress(data) if is_whole else b""
-    except zstandard.ZstdError:
-        is_whole = False
-    if not is_whole:
+        body = decompressed(data, size) if 0 <= chunks <= places else b""
+    except ValueError:
+        body = b""
+    if len(body) != size:
         raise ValueError(f"{len(data)} bytes with {chunks} chunks do not fill {shape}")
     numbers = np.frombuffer(body, "<i4").astype(np.int32)
     if not chunks:

@@ -3,15 +3,17 @@
 from collections.abc import Sequence
 
 import msgspec
-import zstandard
 
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import EventHistory, Forest, ForestState, NodeState
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
+from beliefnest.world.compression import compressed, decompressed
 from beliefnest.world.paths import BeliefPath
 
 _LEVEL = 1
+_LARGEST = 2**30
+"""Greatest number of bytes of a node; its grids have some bytes for each cell of the box."""
 
 
 class _Saved(msgspec.Struct, forbid_unknown_fields=True):
@@ -23,11 +25,7 @@ def saved(forest: Forest) -> bytes:
     """Return the bytes of a forest; `restored` is the inverse. The forest leaves its stretch."""
     state, nodes = forest.saved()
     # Nodes hold all blocks of the box, so each is compressed by itself to bound the memory in use.
-    packer = zstandard.ZstdCompressor(level=_LEVEL)
-    # Compressed bytes keep the memory of uncompressed ones until they are copied.
-    packed = [
-        (node.row.path, bytes(memoryview(packer.compress(codec.encode(node))))) for node in nodes
-    ]
+    packed = [(node.row.path, compressed(codec.encode(node), _LEVEL)) for node in nodes]
     return codec.encode(_Saved(state, packed))
 
 
@@ -65,6 +63,6 @@ def restored(
 
 def _unpacked(packed: bytes) -> bytes:
     try:
-        return zstandard.ZstdDecompressor().decompress(packed)
-    except zstandard.ZstdError as fault:
+        return decompressed(packed, _LARGEST)
+    except ValueError as fault:
         raise StoreError(f"stored bytes are no node of a forest: {fault}") from fault

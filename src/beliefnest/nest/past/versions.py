@@ -8,8 +8,9 @@ from importlib import metadata
 from types import MappingProxyType
 
 from beliefnest.version import VERSION
+from beliefnest.world.compression import ZSTD_VERSION
 
-_LIBRARIES = ("jinja2", "msgspec", "numba", "numpy", "zstandard")
+_LIBRARIES = ("jinja2", "msgspec", "numba", "numpy")
 
 
 def own_versions() -> dict[str, str]:
@@ -19,6 +20,7 @@ def own_versions() -> dict[str, str]:
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
         "sqlite": sqlite3.sqlite_version,
+        "zstd": ZSTD_VERSION,
         **_library_versions(),
     }
 
