@@ -1,5 +1,6 @@
 """Shortcuts: rules without beliefs, and the tasks that must not be won by them."""
 
+import functools
 import json
 import math
 import re
@@ -14,8 +15,9 @@ from tests.profiles import at_night, few_by_day
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.policies import resolve_policy
-from beliefnest.episodes.shortcuts import rules_of, success_of, trained_rule
+from beliefnest.episodes.shortcuts import rules_of, trained_rule
 from beliefnest.episodes.tasks import generated
+from beliefnest.episodes.trials import wins_of
 
 SEEDS = at_night(20, 6)
 BALANCED = ("watchman", "kitchen", "joint-lift")
@@ -33,7 +35,7 @@ RULES = [(name, rule) for name in (*BALANCED, *SPOKEN, "blueprint") for rule in 
 
 @pytest.mark.parametrize(("name", "rule"), few_by_day(RULES[:: at_night(1, 5)], 2))
 def test_no_rule_without_beliefs_wins_a_balanced_task(name: str, rule: str) -> None:
-    won = success_of(lambda seed: bn.Task.load(name, seed), rule, range(SEEDS))
+    (won,) = wins_of(lambda seed: bn.Task.load(name, seed), [rule], range(SEEDS))
     # A shortcut wins all; chance wins so many in less than one of a hundred cases.
     assert won <= at_night(14, 5)
 
@@ -148,8 +150,8 @@ def test_a_shortcut_of_ones_own_task_is_found(
     def load(seed: int) -> bn.Task:
         return bn.Task.load(str(file), seed)
 
-    assert [success_of(load, f"rule:{key}", range(1)) for key in ("nearest", "farthest")] == [1, 1]
-    assert success_of(load, trained_rule(load, range(1), tries=2), range(1)) == 1
+    assert wins_of(load, ["rule:nearest", "rule:farthest"], range(1)) == [1, 1]
+    assert wins_of(load, [trained_rule(load, range(1), tries=2)], range(1)) == [1]
     command = ["play", str(file), "--baselines", "--seeds", "1", "--json"]
     assert run_command_line(command) == 1
     found = json.loads(capsys.readouterr().out)["baselines"]
@@ -162,8 +164,8 @@ def test_rules_speak_where_players_may() -> None:
     assert "rule:any+plan" in names
     assert "rule:farthest-sally+plan:tell" in names
     # To say everything is against its rules, or not: that is what the trial is for.
-    won = success_of(lambda seed: bn.Task.load("help-find", seed), "rule:any+plan", range(1))
-    assert won == 0
+    load = functools.partial(bn.Task.load, "help-find")
+    assert wins_of(load, ["rule:any+plan"], range(1)) == [0]
 
 
 @pytest.mark.parametrize(

@@ -15,10 +15,9 @@ from beliefnest.studies.items.functional.certifying import (
     Certificate,
     certified,
     chance_of,
-    check_functional,
-    families_of,
 )
 from beliefnest.studies.items.functional.pairing import by_order, paired, plot_pairs
+from beliefnest.studies.items.functional.siblings import check_functional, families_of
 from beliefnest.studies.study import Study
 
 _RATES = {"rate": "", "pass_at_k": "pass@k", "pass_hat_k": "pass^k"}

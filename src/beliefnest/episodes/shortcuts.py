@@ -5,11 +5,11 @@ same places.
 """
 
 import random
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 
-from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.rules import linear_key
 from beliefnest.episodes.task import Task
+from beliefnest.episodes.trials import wins_of
 
 CHANCE = "any"
 """Key of the rule that draws among the places."""
@@ -55,14 +55,5 @@ def trained_rule(load: Callable[[int], Task], seeds: Sequence[int], tries: int =
     size = len(task.agents) + _FIXED_FEATURES
     weights = [[chance.gauss(0, 1) for _ in range(size)] for _ in range(tries)]
     names = [rules_of(task, [linear_key(each)])[-1] for each in weights]
-    return max(names, key=lambda name: success_of(load, name, seeds))
-
-
-def success_of(load: Callable[[int], Task], policy: str, seeds: Iterable[int]) -> int:
-    """Return the number of instances in which players with a policy reach the goal."""
-    reached = 0
-    for seed in seeds:
-        task = load(seed)
-        with Episode(task, dict.fromkeys(task.players, policy), seed=seed) as episode:
-            reached += episode.play().success
-    return reached
+    won = wins_of(load, names, seeds)
+    return names[won.index(max(won))]

@@ -1,16 +1,20 @@
 """Functional items: what order their episodes need, and how families are refused."""
 
 import json
+from itertools import product
 from pathlib import Path
 
 import pytest
+from tests.profiles import at_night, few_by_day
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.task import Task
-from beliefnest.studies.items.functional.certifying import Certificate, TaskFamily
+from beliefnest.studies.items.functional.certifying import Certificate, certified
 from beliefnest.studies.items.functional.pairing import LiteralFunctionalPair, by_order
+from beliefnest.studies.items.functional.siblings import TaskFamily
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "functional"
+FAMILIES = ("bring", "take", "tell", "warn", "mislead")
 
 
 def tell(tmp_path: Path, start: str) -> TaskFamily:
@@ -69,6 +73,21 @@ def test_families_are_put_together_by_order():
     first, second = by_order([last, one, other])
     assert (first.family, first.order, second.order) == ("", 1, 2)
     assert list(first.literal.values()) == [[True], [False]]
+
+
+@pytest.mark.parametrize(("name", "order"), few_by_day(product(FAMILIES, range(1, 4))))
+def test_each_family_needs_its_order(name, order, tmp_path):
+    document = Task.scenario_document(str(EXAMPLES / f"{name}.yaml"))
+    assert document is not None
+    family = TaskFamily(str(EXAMPLES / f"{name}.yaml"), document, order)
+    seeds = range(1000, 1000 + at_night(20, 1))
+    certificate = certified(family, seeds, tmp_path, 1, lambda progress: None)
+    assert certificate.faults == []
+    assert (certificate.order, certificate.bound) == (order, 1 / 3)
+    # Outcomes are kept: nothing is played again.
+    kept = {file: file.stat().st_mtime_ns for file in tmp_path.glob("*.json")}
+    assert certified(family, seeds, tmp_path, 1, lambda progress: None) == certificate
+    assert {file: file.stat().st_mtime_ns for file in tmp_path.glob("*.json")} == kept
 
 
 @pytest.mark.extra("matplotlib")

@@ -10,7 +10,8 @@ from beliefnest.errors import ModelError
 from beliefnest.plan.jobs import OnStudyProgress
 from beliefnest.studies.accuracy_figure import plot_accuracy
 from beliefnest.studies.clusters import exchange_p, rate_interval
-from beliefnest.studies.items.functional.certifying import Certificate, TaskFamily
+from beliefnest.studies.items.functional.certifying import Certificate
+from beliefnest.studies.items.functional.siblings import TaskFamily
 from beliefnest.studies.study import Study
 
 if TYPE_CHECKING:  # matplotlib is optional, and imported when something is plotted.
