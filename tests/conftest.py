@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,11 @@ settings.load_profile("nightly" if NIGHTLY else "default")
 
 # Tables are as wide as where there is no terminal, whoever runs the tests.
 os.environ.pop("COLUMNS", None)
+
+# Images of containers often forbid bytecode; each process that tests start would then compile all
+# modules anew, which takes longer than most tests.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # Tests interrupt what they start; a shell that starts the tests in the background makes all of
 # them deaf to that.
