@@ -97,7 +97,7 @@ def test_places_are_free_above_its_blocks():
     [
         ({"cells": "KLUv"}, "is damaged, or was captured with another box"),
         ({"cells": "no Base64"}, "is damaged, or was captured with another box"),
-        ({"chunks": 3}, "with 3 chunks do not fill"),
+        ({"chunks": 3}, "unpack to more than 6,216 bytes"),
         ({"chunks": 10**9}, "chunks need 4,096,000 MB; this process may use 5,000 MB, a test"),
         ({"states": ["air"]}, "names the states 0 to 4, but there are 1"),
         ({"states": [*TEXTS[:-1], "levr"]}, "no block 'levr' in"),

@@ -4,14 +4,13 @@ Files with many more cuboids than people would write have it in place of entries
 """
 
 import base64
-import binascii
 import textwrap
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, StoreError
 from beliefnest.scenarios.format import TerrainEntry
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.packing import packed, unpacked
@@ -61,7 +60,7 @@ def numbers_in(entry: TerrainEntry, shape: tuple[int, int, int]) -> Terrain:
         )
     try:
         numbers = unpacked(base64.b64decode(entry.cells), shape, entry.chunks)
-    except (ValueError, binascii.Error) as fault:
+    except (ValueError, StoreError) as fault:
         raise InputError(
             f"is damaged, or was captured with another box ({fault}); capture the place again"
         ) from None

@@ -72,7 +72,7 @@ class Chunks:
         """Decompress bytes; StoreError if they are damaged or would be too large."""
         try:
             return decompressed(body, largest)
-        except ValueError as fault:
+        except StoreError as fault:
             raise damage(self._database.path, str(fault)) from fault
 
     def add(

@@ -2,6 +2,8 @@
 
 import sys
 
+from beliefnest.errors import StoreError
+
 if sys.version_info >= (3, 14):
     from compression import zstd
 else:
@@ -20,20 +22,16 @@ def decompressed(frame: bytes, largest: int) -> bytes:
 
     Args:
         frame: The frame.
-        largest: Greatest number of bytes in it. Damaged or hostile files may declare any size.
+        largest: Greatest number of bytes in it. Damaged or hostile frames may hold any number.
 
     Raises:
-        ValueError: The frame is damaged, states no number of bytes, or a larger one.
+        StoreError: The frame is damaged, or holds more bytes.
     """
     reader = zstd.ZstdDecompressor()
     try:
-        size = zstd.get_frame_info(frame).decompressed_size
-        # A stream of unknown size would be unpacked up to any size.
-        if size is None or size > largest:
-            raise ValueError(f"a part would unpack to more than {largest:,} bytes")
-        data = reader.decompress(frame, max_length=size)
+        data = reader.decompress(frame, max_length=largest)
     except zstd.ZstdError as fault:
-        raise ValueError(str(fault)) from fault
+        raise StoreError(str(fault)) from fault
     if not reader.eof:
-        raise ValueError(f"a frame of {len(frame)} bytes ends too early")
+        raise StoreError(f"a part is cut, or would unpack to more than {largest:,} bytes")
     return data

@@ -36,15 +36,12 @@ def unpacked(data: bytes, shape: tuple[int, int, int], chunks: int) -> Terrain:
         chunks: Number of its different chunks; 0: it is one chunk.
 
     Raises:
-        ValueError: The bytes hold no such terrain.
+        StoreError: The bytes are damaged.
+        ValueError: They hold no such terrain.
     """
     places = math.prod(Lattice(shape, is_one=False).counts)
     size = 4 * (places + chunks * VOLUME if chunks else math.prod(shape))
-    try:
-        body = decompressed(data, size) if 0 <= chunks <= places else b""
-    except ValueError:
-        body = b""
-    if len(body) != size:
+    if not 0 <= chunks <= places or len(body := decompressed(data, size)) != size:
         raise ValueError(f"{len(data)} bytes with {chunks} chunks do not fill {shape}")
     numbers = np.frombuffer(body, "<i4").astype(np.int32)
     if not chunks:

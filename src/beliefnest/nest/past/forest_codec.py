@@ -6,7 +6,6 @@ import msgspec
 
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import EventHistory, Forest, ForestState, NodeState
-from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 from beliefnest.world.compression import compressed, decompressed
 from beliefnest.world.paths import BeliefPath
@@ -57,12 +56,5 @@ def restored(
             return None
         wanted = {path[:depth] for path in paths if path in there for depth in range(len(path) + 1)}
         nodes = [node for node in nodes if node[0] in wanted]
-    states = (codec.decode(_unpacked(packed), NodeState) for _, packed in nodes)
+    states = (codec.decode(decompressed(packed, _LARGEST), NodeState) for _, packed in nodes)
     return Forest.restored(context, events, body.state, states)
-
-
-def _unpacked(packed: bytes) -> bytes:
-    try:
-        return decompressed(packed, _LARGEST)
-    except ValueError as fault:
-        raise StoreError(f"stored bytes are no node of a forest: {fault}") from fault
