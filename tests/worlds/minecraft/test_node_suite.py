@@ -11,7 +11,7 @@ from beliefnest.worlds.minecraft.node_files import node_path
 
 NODE_ROOM = Path(__file__).parents[3] / "src" / "beliefnest" / "worlds" / "minecraft" / "node"
 FILES = sorted(path.relative_to(NODE_ROOM) for path in (NODE_ROOM / "test").rglob("*.test.js"))
-TOGETHER = () if NIGHTLY else ("places", "plugins", "sandbox", "skills")
+TOGETHER = () if NIGHTLY else ("parts", "places", "plugins", "sandbox", "skills")
 """Folders whose files run in one process by day: most of what a file takes is Node's beginning."""
 
 LONG = (

@@ -6,12 +6,12 @@ const os = require('node:os')
 const path = require('node:path')
 const { test } = require('node:test')
 const { Vec3 } = require('vec3')
-const { add } = require('../bundling/further')
-const { writeVersions } = require('../bundling/versions')
-const { commandsFor } = require('../src/remote/commands')
-const { Setup } = require('../src/remote/setup')
-const { BlockMapping, heldFor } = require('../src/remote/versions')
-const { minecraft } = require('../src/versions')
+const { add } = require('../../bundling/further')
+const { writeVersions } = require('../../bundling/versions')
+const { commandsFor } = require('../../src/remote/commands')
+const { Setup } = require('../../src/remote/setup')
+const { BlockMapping, heldFor } = require('../../src/remote/versions')
+const { minecraft } = require('../../src/versions')
 
 const registry = version => require('prismarine-registry')(version)
 const ours = registry(minecraft)
@@ -25,7 +25,7 @@ for (const version of Object.keys(NEWER)) {
     const state = text => {
       const [, name, inner] = /^(\w+)(?:\[(.*)\])?$/.exec(text)
       const properties = Object.fromEntries((inner?.split(',') ?? []).map(each => each.split('=')))
-      return require('../src/server/plugins/lib/states').encode(theirs, name, properties)
+      return require('../../src/server/plugins/lib/states').encode(theirs, name, properties)
     }
     let others = 0
     for (const { name, defaultState, maxStateId } of ours.blocksArray) {
@@ -86,7 +86,7 @@ test('a version is spoken by any held one of the same protocol', () => {
 test('further versions are found in folders, and read when asked for', () => {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'versions-'))
   try {
-    execFileSync(process.execPath, [path.join(__dirname, '..', 'bundling', 'versions.js'), folder, '1.21.5'])
+    execFileSync(process.execPath, [path.join(__dirname, '..', '..', 'bundling', 'versions.js'), folder, '1.21.5'])
     fs.writeFileSync(path.join(folder, 'minecraft-9.9.json.gz'), 'damaged, and never read')
     const versions = { [minecraft]: { language: {} } }
     add(versions, versions[minecraft], [folder])

@@ -1,18 +1,18 @@
 'use strict'
 /** Attribution of a remote server's block changes to the agents who caused them. */
-require('../src/prepare').prepare()
+require('../../src/prepare').prepare()
 const assert = require('node:assert/strict')
 const { test } = require('node:test')
 const { Vec3 } = require('vec3')
-const { Box } = require('../src/regions/box')
-const { Terrain } = require('../src/regions/terrain')
-const { BlockMapping } = require('../src/remote/versions')
-const { Scene } = require('../src/remote/scene')
-const { Witness } = require('../src/remote/witness')
-const { minecraft } = require('../src/versions')
+const { Box } = require('../../src/regions/box')
+const { Terrain } = require('../../src/regions/terrain')
+const { BlockMapping } = require('../../src/remote/versions')
+const { Scene } = require('../../src/remote/scene')
+const { Witness } = require('../../src/remote/witness')
+const { minecraft } = require('../../src/versions')
 
 const registry = require('prismarine-registry')(minecraft)
-const { encode } = require('../src/server/plugins/lib/states')
+const { encode } = require('../../src/server/plugins/lib/states')
 const Item = require('prismarine-item')(registry)
 const LOWER = new Vec3(0, 0, 0)
 

@@ -1,8 +1,8 @@
 'use strict'
 const assert = require('node:assert/strict')
 const { describe, it } = require('node:test')
-const { TO_CLIENT, TO_SERVER } = require('../src/net/packets')
-const { Translator } = require('../src/net/translate')
+const { TO_CLIENT, TO_SERVER } = require('../../src/net/packets')
+const { Translator } = require('../../src/net/translate')
 const protocol = require('minecraft-data')('1.20.4').protocol.play
 
 const ORIGIN = { x: 16 * 1000, z: -16 * 7 }

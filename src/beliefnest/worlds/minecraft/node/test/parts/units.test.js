@@ -2,11 +2,11 @@
 const assert = require('node:assert/strict')
 const { EventEmitter } = require('node:events')
 const { describe, it } = require('node:test')
-const { Channel } = require('../src/channel/channel')
-const { Allotment } = require('../src/regions/allotment')
-const { Box, runsOf, statesOf } = require('../src/regions/box')
-const { angleStep, fromDegrees, samePose, toDegrees, wrap } = require('../src/server/angles')
-const { makeRegional, regionalState } = require('../src/server/regional')
+const { Channel } = require('../../src/channel/channel')
+const { Allotment } = require('../../src/regions/allotment')
+const { Box, runsOf, statesOf } = require('../../src/regions/box')
+const { angleStep, fromDegrees, samePose, toDegrees, wrap } = require('../../src/server/angles')
+const { makeRegional, regionalState } = require('../../src/server/regional')
 
 describe('a box', () => {
   const box = new Box([-1, 5, 2], [1, 6, 4])

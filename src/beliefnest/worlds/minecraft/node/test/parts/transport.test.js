@@ -1,10 +1,10 @@
 'use strict'
 const assert = require('node:assert/strict')
 const { describe, it } = require('node:test')
-const { Appearance } = require('../src/net/appearance')
-const { connect, Mail, ServerEnd } = require('../src/net/transport')
-const { Translator } = require('../src/net/translate')
-const { agentUuid } = require('../src/bots/bot')
+const { Appearance } = require('../../src/net/appearance')
+const { connect, Mail, ServerEnd } = require('../../src/net/transport')
+const { Translator } = require('../../src/net/translate')
+const { agentUuid } = require('../../src/bots/bot')
 const registry = require('prismarine-registry')('1.20.4')
 
 const settled = () => new Promise(resolve => { setImmediate(resolve) })

@@ -1,10 +1,10 @@
 'use strict'
 const assert = require('node:assert/strict')
 const { describe, it } = require('node:test')
-require('../src/prepare').prepare()
+require('../../src/prepare').prepare()
 const registry = require('prismarine-registry')('1.20.4')
-const { rememberBlocks } = require('../src/blocks')
-const { Random } = require('../src/time/random')
+const { rememberBlocks } = require('../../src/blocks')
+const { Random } = require('../../src/time/random')
 const Chunk = require('prismarine-chunk')(registry)
 
 rememberBlocks(registry)

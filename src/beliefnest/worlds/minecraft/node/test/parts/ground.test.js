@@ -2,13 +2,13 @@
 /** Terrains as they are told, and the columns that are made of them. */
 const assert = require('node:assert/strict')
 const { describe, it } = require('node:test')
-require('../src/prepare').prepare()
+require('../../src/prepare').prepare()
 const registry = require('prismarine-registry')('1.20.4')
-const { rememberBlocks } = require('../src/blocks')
-const { Box, runsOf } = require('../src/regions/box')
-const { Ground } = require('../src/regions/ground')
-const { Terrain } = require('../src/regions/terrain')
-const { Random } = require('../src/time/random')
+const { rememberBlocks } = require('../../src/blocks')
+const { Box, runsOf } = require('../../src/regions/box')
+const { Ground } = require('../../src/regions/ground')
+const { Terrain } = require('../../src/regions/terrain')
+const { Random } = require('../../src/time/random')
 
 rememberBlocks(registry)
 
