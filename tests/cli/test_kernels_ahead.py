@@ -4,6 +4,7 @@ import importlib
 import io
 import os
 import pickle
+import subprocess
 import sys
 
 import numba
@@ -84,3 +85,26 @@ def test_the_compiler_compiles_what_it_is_asked_for(count):
     types = (numba.types.Array(numba.types.float64, 1, "C"), numba.types.int64)
     compile_all(io.BytesIO(pickle.dumps(("counting", "count", types))))
     assert is_compiled(count)
+
+
+ASKED = """
+import os
+
+class kernel:
+    @staticmethod
+    def compile(path):
+        with open(path, "w") as file:
+            file.write(str(os.nice(0)))
+"""
+
+
+def test_the_compiler_gives_way_to_commands(tmp_path):
+    (tmp_path / "asked.py").write_text(ASKED)
+    told = tmp_path / "told"
+    subprocess.run(
+        [sys.executable, "-m", "beliefnest.cli.kernels_ahead"],
+        cwd=tmp_path,
+        input=pickle.dumps(("asked", "kernel", str(told))),
+        check=True,
+    )
+    assert int(told.read_text()) > os.nice(0)

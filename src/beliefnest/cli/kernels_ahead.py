@@ -6,6 +6,7 @@ functions in Python, which give the same results, for as long as `_SECONDS`. The
 goes on when the command has ended.
 """
 
+import os
 import pickle
 import subprocess
 import sys
@@ -26,6 +27,8 @@ _SECONDS = 5.0
 """Processor time for calls in Python; afterwards the command waits for the compiler."""
 _MOST_BYTES = 64 << 20
 """Greatest size of the arrays of a call in Python, which keeps a copy of them."""
+_NICENESS = 10
+"""Priority of the compiling process, of 19 for the lowest."""
 
 
 class _SpentError(Exception):
@@ -171,4 +174,6 @@ def compile_all(wanted: BinaryIO) -> None:
 
 
 if __name__ == "__main__":
+    # Only later commands need the machine code; where there is one processor, this one needs that.
+    os.nice(_NICENESS)
     compile_all(sys.stdin.buffer)
