@@ -5,7 +5,7 @@ import pytest
 import beliefnest as bn
 from beliefnest.worlds.scripted.literal_program import literal_calls
 
-SKILLS = ("goToPosition", "getItemFromChest", "say", "think", "waitTicks", "waitForChat")
+SKILLS = ("goToPosition", "getItemFromChest", "say", "whisper", "think", "waitTicks", "waitForChat")
 LITERAL = [
     "",
     "// nothing",
@@ -22,6 +22,14 @@ LITERAL = [
     "await getItemFromChest(bot, new Vec3(4, 1, 4), {apple: 1})\r\nawait say(bot, 'gone')",
     "await waitTicks(bot, 500)",
     "await waitForChat(bot, 3)",
+    "await say(bot, 'it is there', [located('apple', new Vec3(4, 1, 4))])",
+    "await whisper(bot, 'bob', 'gone', [absent('apple', new Vec3(4, 1, 4)), "
+    "positionOf('ann', new Vec3(1.5, 1, 1.5)), blockAt(new Vec3(4, 1, 4), 'chest[facing=west]')])",
+    "await say(bot, 'no such thing', [located('appel', new Vec3(4, 1, 4))])",
+    "await say(bot, 'mixed up', [located(new Vec3(4, 1, 4), 'apple')])",
+    "await say(bot, 'mixed up', [blockAt('stone', new Vec3(4, 1, 4))])",
+    "await say(bot, 'far', [located('apple', new Vec3(400, 1, 4))])",
+    "await goToPosition(bot, [located('apple', 3)])",
     "await say (bot, '\u00e9\u2028') // \U0001f680\r\n// more\nawait say(bot, '', )",
 ]
 OTHERS = [
@@ -55,6 +63,20 @@ OTHERS = [
     "await goToPosition(bot, new Vec3(1, 2))",
     "await goToPosition(bot, new Box(1, 2, 3))",
     "await getItemFromChest(bot, new Vec3(1, 1, 1), {})",
+    "await say(bot, 'a', [located('apple')])",
+    "await say(bot, 'a', [located('apple', new Vec3(1, 1, 1), leak = 1)])",
+    "await say(bot, 'a', [located?.('apple', new Vec3(1, 1, 1))])",
+    "await say(bot, 'a', [found('apple', new Vec3(1, 1, 1))])",
+    "await say(bot, 'a', [, located('apple', new Vec3(1, 1, 1))])",
+    "await say(bot, 'a', [located('apple', new Vec3(1, 1, 1)),, ])",
+    "await say(bot, 'a', [,])",
+    "await say(bot, 'a', [...located('apple', new Vec3(1, 1, 1))])",
+    "await say(bot, 'a', [located('apple', [])])",
+    "await say(bot, 'a', [])",
+    "await say(bot, 'a', [located('apple', new Vec3(1, 1, 1)),])",
+    "await say(bot, 'a', [located('apple', new Vec3(1, 1, 1)), // here\n])",
+    "await say(bot, 'a', ['apple'])",
+    "await say(bot, 'a', located('apple', new Vec3(1, 1, 1)))",
     "<!-- a\nawait say(bot, 'a')",
 ]
 
