@@ -8,6 +8,7 @@ import math
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import islice, product
 from typing import Any
 
@@ -99,6 +100,7 @@ class FlatActions:
         self.offers = tuple(islice(offers, _MOST_OFFERS + 1))
         if len(self.offers) > _MOST_OFFERS:
             raise InputError(_TOO_MANY)
+        self._parts = frozenset(part for offer in self.offers for part, _ in offer.parts)
 
     def call(self, number: object, mind: ActorMind) -> Call:
         """Return the call that a number stands for.
@@ -114,7 +116,7 @@ class FlatActions:
                 f"{number!r:.100} is not in the action space; give a number from 0 to "
                 f"{len(self.offers) - 1}"
             ) from None
-        named = self._named(offer, mind)
+        named = _named(offer, self._values(mind))
         match offer.skill, named:
             case "goToPosition", _:
                 return Call("goToPosition", (_goal(named, mind), _distance(named)))
@@ -130,35 +132,55 @@ class FlatActions:
 
     def mask(self, mind: ActorMind) -> npt.NDArray[np.int8]:
         """Return 1 for each action that can begin as far as its agent knows, and 0 for others."""
-        return np.array([self._can_begin(offer, mind) for offer in self.offers], np.int8)
+        values = self._values(mind)
 
-    def _can_begin(self, offer: Offer, mind: ActorMind) -> bool:
-        try:
-            named = self._named(offer, mind)
-            goal = _goal(named, mind) if offer.skill not in SPEECH and named else None
-            if offer.skill in SPEECH and "cell" in named:
-                _block(named["cell"], mind)
-        except NotKnownError:
-            return False
+        @cache  # many actions are about one place
+        def leads(part: str, thing: Any, near: float | None) -> bool:
+            goal = _goal({part: thing}, mind)
+            return _is_there(part, thing, mind) and mind.may_reach(goal, near)
+
+        can_begin = (_can_begin(offer, mind, values, leads) for offer in self.offers)
+        return np.fromiter(can_begin, np.int8, len(self.offers))
+
+    def _values(self, mind: ActorMind) -> Mapping[str, Sequence[Any]]:
+        """Return the things that numbers stand for, by part."""
+        own = {"place": mind.places, "cell": mind.cells}
+        others = self._parts - own.keys()
+        return {**own, **{part: self._calls.known(mind.things, part) for part in others}}
+
+
+def _named(offer: Offer, values: Mapping[str, Sequence[Any]]) -> Mapping[str, Any]:
+    """Return the things that an action is about, by part.
+
+    Raises:
+        NotKnownError: A number stands for nothing.
+    """
+    for part, number in offer.parts:
+        if number >= len(values[part]):
+            raise NotKnownError(f"it knows no {part} {number} so far")
+    return {part: values[part][number] for part, number in offer.parts}
+
+
+def _can_begin(
+    offer: Offer,
+    mind: ActorMind,
+    values: Mapping[str, Sequence[Any]],
+    leads: Callable[[str, Any, float | None], bool],
+) -> bool:
+    try:
+        named = _named(offer, values)
+        speaks = offer.skill in SPEECH
+        if speaks and "cell" in named:
+            _block(named["cell"], mind)
         if named.get("agent") == mind.agent or _lacks(offer.skill, named, mind.state):
             return False
-        if goal is None:
-            return mind.may_speak or offer.skill not in SPEECH
+        if speaks or not named:
+            return mind.may_speak or not speaks
+        part = _goal_part(named)
         is_walk = offer.skill in ("goToPosition", "giveItemToOther")
-        return _is_there(named, mind) and mind.may_reach(
-            goal, _distance(named) if is_walk else None
-        )
-
-    def _named(self, offer: Offer, mind: ActorMind) -> Mapping[str, Any]:
-        """Return the things that an action is about, by part."""
-        things = {}
-        for part, number in offer.parts:
-            own = {"place": mind.places, "cell": mind.cells}
-            values = own[part] if part in own else self._calls.known(mind.things, part)
-            if number >= len(values):
-                raise NotKnownError(f"it knows no {part} {number} so far")
-            things[part] = values[number]
-        return things
+        return leads(part, named[part], _distance(named) if is_walk else None)
+    except NotKnownError:
+        return False
 
 
 def checked_cells(cells: Sequence[Any], box: Box) -> tuple[Position, ...]:
@@ -205,13 +227,17 @@ def _goal(named: Mapping[str, Any], mind: ActorMind) -> Position:
     Raises:
         NotKnownError: It does not know where another agent is.
     """
-    where: Position = next(named[part] for part in _GOALS if part in named)
     if "agent" not in named:
+        where: Position = named[_goal_part(named)]
         return where
     position = mind.state.agents[named["agent"]].position
     if position is None:
         raise NotKnownError(f"it does not know where {named['agent']} is")
     return block_at(position)
+
+
+def _goal_part(named: Mapping[str, Any]) -> str:
+    return next(part for part in _GOALS if part in named)
 
 
 def _distance(named: Mapping[str, Any]) -> int:
@@ -258,11 +284,10 @@ def _lacks(skill: str, named: Mapping[str, Any], state: State) -> bool:
     return False
 
 
-def _is_there(named: Mapping[str, Any], mind: ActorMind) -> bool:
+def _is_there(part: str, thing: Any, mind: ActorMind) -> bool:
     """Return False if an agent knows that a thing is no longer where it was."""
-    for part, thing in named.items():
-        if KIND_OF_PART.get(part) in PLACED:
-            state = mind.state.blocks.terrain[mind.state.box.index(thing)]
-            if block_classes()[state] not in (-1, BLOCK_CLASSES.index(KIND_OF_PART[part])):
-                return False
-    return True
+    kind = KIND_OF_PART.get(part)
+    if kind not in PLACED:
+        return True
+    state = mind.state.blocks.terrain[mind.state.box.index(thing)]
+    return block_classes()[state] in (-1, BLOCK_CLASSES.index(kind))
