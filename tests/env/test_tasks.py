@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 import beliefnest as bn
+from beliefnest.belief.initial import initial_forest
 from beliefnest.env import aec_env, parallel_env, vector_env
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.simple import Scripted
 from beliefnest.episodes.task import Task
+from beliefnest.nest.past import history
 
 pytest.importorskip("pettingzoo", reason="the extra `pettingzoo` is not installed")
 from gymnasium.vector import AutoresetMode
@@ -232,3 +234,20 @@ def test_an_environment_is_refused_in_a_forked_child() -> None:
     observations, *_ = env.step({})
     assert np.all(observations["anne"]["tick"] > 0)
     env.close()
+
+
+def test_the_beliefs_of_a_first_observation_are_begun_together(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    begun: list[set[tuple[str, ...]]] = []
+
+    def noted(*arguments: Any) -> Any:
+        begun.append({*arguments[4]})
+        return initial_forest(*arguments)
+
+    monkeypatch.setattr(history, "initial_forest", noted)
+    nested, agents = ["/spy/watchman"], ["spy", "watchman"]
+    with closing(parallel_env("watchman", nested=nested, agents=agents)) as env:
+        env.reset(1)
+        of_the_goal = ("watchman", "spy")
+        assert begun == [{("spy",), ("watchman",), ("spy", "watchman"), of_the_goal}]

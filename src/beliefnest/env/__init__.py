@@ -10,8 +10,9 @@ if TYPE_CHECKING:  # Imported when an environment is made.
     from pettingzoo import AECEnv
 
     from beliefnest.env.bounds import Phrases
-    from beliefnest.env.environment import BeliefEnv, EnvironmentOptions
+    from beliefnest.env.environment import BeliefEnv
     from beliefnest.env.learners import LearnerEnv
+    from beliefnest.env.options import EnvironmentOptions
     from beliefnest.env.playing import Instances
     from beliefnest.env.vector import BeliefVectorEnv
     from beliefnest.episodes.task import Task
@@ -192,7 +193,8 @@ def sb3_env(
 def _classes() -> "tuple[type[BeliefEnv], type[EnvironmentOptions], type[BeliefVectorEnv]]":
     """Import the classes that need PettingZoo."""
     try:
-        from beliefnest.env.environment import BeliefEnv, EnvironmentOptions
+        from beliefnest.env.environment import BeliefEnv
+        from beliefnest.env.options import EnvironmentOptions
         from beliefnest.env.vector import BeliefVectorEnv
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("pettingzoo", "gymnasium"):

@@ -2,10 +2,10 @@
 
 import math
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
-from typing import Any, Literal, cast
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,15 +15,28 @@ from pettingzoo import ParallelEnv
 from beliefnest.belief.plain import belief_json
 from beliefnest.belief.view import State
 from beliefnest.env.acting import Acting, ActionState, ProgramActing, SkillActing
-from beliefnest.env.actions import MOST_ITEMS, Calls, NamedAction, NotKnownError
-from beliefnest.env.bounds import ArrayShape, Phrases, SpaceBounds
+from beliefnest.env.actions import Calls, NamedAction, NotKnownError
+from beliefnest.env.bounds import SpaceBounds
 from beliefnest.env.flat import ActorMind, FlatActions, checked_cells
 from beliefnest.env.layout import layout_of
+from beliefnest.env.options import (
+    RENDER_MODES,
+    EnvironmentOptions,
+    env_seed,
+    nested_paths,
+)
 from beliefnest.env.order import KnownOrder, Things
 from beliefnest.env.playing import Instances, TaskActing
 from beliefnest.env.rendering import line, picture
 from beliefnest.env.room import check_arrays, check_nested
 from beliefnest.env.saving import Choice, SavedEpisode, check_no_options
+from beliefnest.env.spaces import (
+    BeliefSpace,
+    call_space,
+    observation_space,
+    program_space,
+    space_of,
+)
 from beliefnest.episodes.agent_view import AgentView, Brief
 from beliefnest.episodes.policies.candidates import cells_of, items_of
 from beliefnest.episodes.task import Task
@@ -34,23 +47,17 @@ from beliefnest.owned import Owned
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.skills.calls import Call
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo
-from beliefnest.timeline.run_records import Senses
-from beliefnest.world.paths import BeliefPath, parse_path, path_text, paths_below
-from beliefnest.world.seeds import checked_seed
-from beliefnest.world.texts import fault_of
+from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import Position
 from beliefnest.worlds.by_name import Worlds
-from beliefnest.worlds.names import check_world
 from beliefnest.worlds.scripted.footpaths import InReach, Near
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.hand import REACH
 
-_RENDER_MODES = ("human", "rgb_array")
 _MAX_STEPS = 100
 _TIMEOUT_TICKS = 1200
 _TRIED = 8
 """Number of instances whose things are counted for the sizes of arrays."""
-_LONGEST_PROGRAM = 10_000
 _OF_WORLD = frozenset(
     (
         *("_own", "_worlds", "_nest", "_acting", "_grounds"),
@@ -58,118 +65,9 @@ _OF_WORLD = frozenset(
     )
 )
 """Attributes of an environment that belong to its open world."""
-_LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
 
 Infos = dict[str, Any]
 """Info dictionary of one agent."""
-
-
-@dataclass(frozen=True)
-class EnvironmentOptions:
-    """Options of an environment; the arguments of `parallel_env`, with the same names."""
-
-    world: str = "scripted"
-    actions: Literal["skills", "programs", "flat"] = "skills"
-    observations: Literal["arrays", "dict"] = "arrays"
-    agents: tuple[str, ...] | None = None
-    nested: int | tuple[str, ...] = ()
-    phrases: Phrases | Sequence[str] = ()
-    items: tuple[str, ...] = ()
-    cells: tuple[Position, ...] = ()
-    sizes: Mapping[str, int] = field(default_factory=dict)
-    reward: Callable[[Nest, str], float] | None = None
-    ends: Callable[[Nest], bool] | None = None
-    max_steps: int | None = None
-    step_ticks: int | None = None
-    timeout_ticks: int | None = None
-    plays_script: bool = False
-    senses: Senses | None = None
-    render_mode: Literal["rgb_array", "human"] | None = None
-    render_path: str = "/"
-    seed: int = 0
-
-    def __post_init__(self) -> None:
-        check_world(self.world, servers=False)
-        if self.senses not in (None, "world", "percepts"):
-            raise InputError(f"senses is {self.senses!r}; it is 'world' or 'percepts'")
-        if self.actions not in ("skills", "programs", "flat"):
-            raise InputError(f"actions is {self.actions!r}; it is 'skills', 'programs' or 'flat'")
-        if self.observations not in ("arrays", "dict"):
-            raise InputError(f"observations is {self.observations!r}; it is 'arrays' or 'dict'")
-        if self.render_mode not in (None, *_RENDER_MODES):
-            raise InputError(
-                f"render_mode is {self.render_mode!r}; it is {' or '.join(_RENDER_MODES)}, or None"
-            )
-        _seed(self.seed)
-        if isinstance(self.nested, int) and (isinstance(self.nested, bool) or self.nested < 0):
-            raise InputError(f"nested is {self.nested!r}; give paths, or a depth from 0 on")
-        for name, texts in (("phrases", self.phrases), ("items", self.items)):
-            if isinstance(texts, str) or not all(isinstance(each, str) for each in texts):
-                raise InputError(f"{name} is {texts!r:.100}; give a list of texts")
-        if faults := list(filter(None, map(fault_of, self.phrases))):
-            raise InputError(f"phrases has {faults[0]}")
-        counts = ("max_steps", "step_ticks", "timeout_ticks")
-        for name in counts:
-            number = getattr(self, name)
-            if number is not None and (not isinstance(number, int) or number < 1):
-                raise InputError(f"{name} is {number!r}; it must be at least 1, or None")
-        for name, function in (("reward", self.reward), ("ends", self.ends)):
-            if function is not None and not callable(function):
-                raise InputError(f"{name} is {function!r}; give a function, or None")
-
-    def check_scenario(self) -> None:
-        """Check options that only tasks can have.
-
-        Raises:
-            InputError: Steps with a fixed number of ticks are not possible.
-        """
-        if self.step_ticks and (self.actions == "programs" or self.world != "scripted"):
-            raise InputError(
-                "step_ticks is for tasks, and for calls of skills in the scripted world; elsewhere "
-                "a step ends with the last program: leave it out"
-            )
-
-    def check_task(self) -> None:
-        """Check that no option is given that tasks do not have.
-
-        Raises:
-            InputError: An option has no effect in tasks.
-        """
-        if self.senses == "world" or self.timeout_ticks is not None or self.plays_script:
-            raise InputError(
-                "a task is played with the knowledge of each agent, in rounds of step_ticks, after "
-                "its script: leave senses and timeout_ticks out, and plays_script"
-            )
-
-    @property
-    def said(self) -> Phrases:
-        """Utterances with their claims."""
-        if isinstance(self.phrases, Mapping):
-            return self.phrases
-        return dict.fromkeys(self.phrases, ())
-
-
-class BeliefSpace(spaces.Space[dict[str, Any]]):
-    """Space of beliefs as plain data: the objects of `beliefnest show --json`, with their bases."""
-
-    def contains(self, x: Any) -> bool:
-        """Return True if a value is such an object."""
-        return isinstance(x, dict) and {"containers", "agents", "chat"} <= x.keys()
-
-    def __eq__(self, other: object) -> bool:
-        """Return True if the other one is such a space."""
-        return isinstance(other, BeliefSpace)
-
-    __hash__ = None  # type: ignore[assignment]  # as all spaces that can be compared
-
-    def sample(self, mask: Any = None, probability: Any = None) -> dict[str, Any]:
-        """Return the belief of an agent that knows nothing."""
-        return {"containers": {}, "agents": {}, "chat": [], "addressees": [], "thoughts": []}
-
-    @property
-    def is_np_flattenable(self) -> bool:
-        """False: the space has no fixed size."""
-        return False
 
 
 class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no type information
@@ -187,7 +85,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     metadata = {  # noqa: RUF012 - as PettingZoo declares it
         "name": "beliefnest_v0",
-        "render_modes": list(_RENDER_MODES),
+        "render_modes": list(RENDER_MODES),
         "render_fps": 4,
         "is_parallelizable": True,
     }
@@ -228,7 +126,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             self._cells_of(each, a) for each in (self._task, *tried) for a in self.possible_agents
         )
         self._most = {**self._bounds.most, "cells": max(map(len, cells))}
-        self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
+        self._nested = nested_paths(options.nested, self.possible_agents, self.layout.agents)
         self._nested_of = {
             agent: tuple(path for path in self._nested if path[0] == agent)
             for agent in self.possible_agents
@@ -242,12 +140,19 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             check_arrays(context, self._bounds, len(self.possible_agents), len(self._nested))
         self.agents: list[str] = []
         self._seed = options.seed - 1
-        self._spaces = {each: self._spaces_of() for each in self.possible_agents}
+        self._spaces = {each: self._new_spaces() for each in self.possible_agents}
         self._forget()
 
     @cached_property
     def _flat(self) -> FlatActions:
         return FlatActions(self._calls, self._most, speaks=self._speaks)
+
+    @property
+    def _reads(self) -> Sequence[str]:
+        """Paths of the beliefs in observations and infos."""
+        return [path_text((agent,)) for agent in self.possible_agents] + [
+            *map(path_text, self._nested)
+        ]
 
     def _forget(self) -> None:
         """Begin a life without a world."""
@@ -350,31 +255,20 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """Space of `state`: numbers in one row, or plain data as observations are."""
         if self._options.observations == "dict":
             return BeliefSpace()
-        return spaces.flatten_space(_space_of(self._bounds.own_shapes()))
+        return spaces.flatten_space(space_of(self._bounds.own_shapes()))
 
-    def _spaces_of(self) -> tuple[spaces.Space[Any], spaces.Space[Any]]:
+    def _new_spaces(self) -> tuple[spaces.Space[Any], spaces.Space[Any]]:
         """Return new spaces of an agent's observations and actions."""
-        is_plain = self._options.observations == "dict"
-        shapes = dict(self._bounds.shapes())
-        if self._options.actions == "flat":
-            shapes["action_mask"] = ((len(self._flat.offers),), np.int8, 0, 1)
-        seen = BeliefSpace() if is_plain else _space_of(shapes)
-        return seen, self._new_action_space()
-
-    def _new_action_space(self) -> spaces.Space[Any]:
-        if self._options.actions == "programs":
-            return spaces.Text(_LONGEST_PROGRAM, min_length=0, charset=_LETTERS)
-        if self._options.actions == "flat":
-            return spaces.Discrete(len(self._flat.offers))
-        parts: dict[str, spaces.Space[Any]] = {"skill": spaces.Discrete(len(self.skills))}
-        for part, size in self._calls.parts.items():
-            if part == "position":
-                parts[part] = spaces.MultiDiscrete(np.array(self._bounds.box.shape))
-            elif part == "count":
-                parts[part] = spaces.Discrete(MOST_ITEMS, start=1)
-            else:
-                parts[part] = spaces.Discrete(size)
-        return spaces.Dict(parts)
+        options, offers = self._options, None
+        acts: spaces.Space[Any] = call_space(self._calls, self._bounds)
+        if options.actions == "programs":
+            acts = program_space()
+        elif options.actions == "flat":
+            offers = len(self._flat.offers)
+            acts = spaces.Discrete(offers)
+        if options.observations == "dict":
+            return BeliefSpace(), acts
+        return observation_space(self._bounds, offers), acts
 
     def action(self, skill: str, /, *, of: str | None = None, **parts: object) -> dict[str, Any]:
         """Return an action of the structured space from names and positions.
@@ -423,7 +317,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if self._worlds is not None:
             self._own.check_own("the environment")
         check_no_options(options)
-        self._seed = self._seed + 1 if seed is None else _seed(seed)
+        self._seed = self._seed + 1 if seed is None else env_seed(seed)
         self._end_episode()
         if self._worlds is None:
             self._worlds = Worlds(0)
@@ -549,7 +443,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             task = self._task
             self._arrange(task.scenario)
             self._bounds.check(self.layout)
-            playing = TaskActing(task, self.possible_agents, chosen.world, self._seed, worlds)
+            learners = self.possible_agents
+            playing = TaskActing(task, learners, chosen.world, self._seed, worlds, self._reads)
             self._nest = playing.nest
             return playing
         nest = self._nest = Nest.open(source, chosen.world, None, self._seed, worlds)
@@ -666,7 +561,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         observation = self._form(order, state, ())
         if self._options.observations == "dict":
             return observation
-        return spaces.flatten(_space_of(self._bounds.own_shapes()), observation)
+        return spaces.flatten(space_of(self._bounds.own_shapes()), observation)
 
     def close(self) -> None:
         """End the episode and close the world."""
@@ -702,8 +597,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             agent: {"error": deeds[agent].error, "busy": deeds[agent].busy} for agent in self.agents
         }
         # Folding all of them together costs less than one by one.
-        read = [(agent,) for agent in self.agents] + [*self._nested]
-        states = self.nest.states(map(path_text, read))
+        states = self.nest.states(self._reads)
         for agent in self.agents:
             self._orders[agent].note(states[path_text((agent,))])
         observations: dict[str, Any] = {}
@@ -741,24 +635,6 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         return self._bounds.arrays(order, state, lines)
 
 
-def _space_of(shapes: Mapping[str, ArrayShape]) -> spaces.Dict:
-    """Return the space of arrays by name."""
-    return spaces.Dict(
-        {
-            name: spaces.Box(low, high, shape, cast(Any, dtype))
-            for name, (shape, dtype, low, high) in shapes.items()
-        }
-    )
-
-
-def _seed(seed: object) -> int:
-    """Return a seed as Gymnasium has them; raise InputError for others."""
-    number = checked_seed(seed)
-    if number < 0:
-        raise InputError(f"seed is {number}; environments take whole numbers from 0 on")
-    return number
-
-
 def _number(earned: Any, agent: str) -> float:
     """Return what a function of the user gives as a reward; raise InputError for no number."""
     try:
@@ -774,24 +650,3 @@ def _truth(ended: Any) -> bool:
     if not isinstance(ended, bool | np.bool_ | int):
         raise InputError(f"ends returned {ended!r:.100}; return True or False")
     return bool(ended)
-
-
-def _nested(
-    nested: int | Sequence[str], acting: Sequence[str], agents: Sequence[str]
-) -> tuple[tuple[str, ...], ...]:
-    """Return the paths of the beliefs for the infos, the deepest first."""
-    if isinstance(nested, int):
-        chosen = {
-            path
-            for agent in acting
-            for path in paths_below((agent,), max(0, nested - 1), agents)[1:]
-        }
-    else:
-        chosen = {parse_path(path, agents) for path in nested}
-        for path in chosen:
-            if len(path) < 2 or path[0] not in acting:
-                raise PathError(
-                    f"{path_text(path)!r} is not a belief of an acting agent about another's; "
-                    f"name one such as /{acting[0]}/{agents[-1]}"
-                )
-    return tuple(sorted(chosen, key=lambda path: (-len(path), path)))

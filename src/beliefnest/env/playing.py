@@ -93,10 +93,17 @@ class TaskActing:
         world: Name of the world.
         seed: Seed of the episode.
         worlds: Pool that lends the world.
+        reads: Paths of the beliefs that are read after each round.
     """
 
     def __init__(
-        self, task: Task, learners: Sequence[str], world: str, seed: int, worlds: Worlds
+        self,
+        task: Task,
+        learners: Sequence[str],
+        world: str,
+        seed: int,
+        worlds: Worlds,
+        reads: Sequence[str],
     ) -> None:
         self._choosers = {agent: Chooser() for agent in learners}
         self._task = task
@@ -107,6 +114,7 @@ class TaskActing:
             seed=seed,
             worlds=worlds,
             names=dict.fromkeys(learners, "environment"),
+            reads=reads,
         )
         self._settled: set[str] = set()
         self._utterances: Counter[str] = Counter()

@@ -12,8 +12,9 @@ from gymnasium import spaces
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, concatenate, create_empty_array, iterate
 
-from beliefnest.env.environment import BeliefEnv, BeliefSpace
+from beliefnest.env.environment import BeliefEnv
 from beliefnest.env.saving import check_no_options
+from beliefnest.env.spaces import BeliefSpace
 from beliefnest.errors import BeliefNestError, InputError, WorkerError
 from beliefnest.world.seeds import checked_seed
 from beliefnest.world.words import counted

@@ -71,6 +71,7 @@ class Episode:
         worlds: Pool that lends the world to one episode after the other; None: start a world.
         listen: Address at which people join to play agents, as for `Nest.open`.
         names: Names in runs for policies that are objects, by agent.
+        reads: Paths of beliefs that the caller reads between rounds; they are folded together.
 
     Raises:
         InputError: A policy is for an unknown agent.
@@ -90,6 +91,7 @@ class Episode:
         worlds: Worlds | None = None,
         names: Mapping[str, str] | None = None,
         listen: int | str | None = None,
+        reads: Sequence[str] = (),
     ) -> None:
         if isinstance(task, Scenario):
             task = Task.of(task)
@@ -103,7 +105,7 @@ class Episode:
         world = world_of_people(world, listen, self._people)
         self._names |= names or {}
         self._world, self._store, self._worlds = world, store, worlds
-        self._patience_s = patience_s
+        self._patience_s, self._reads = patience_s, reads
         self._asker = Asker(self._policies, patience_s)
         self._branch = MAIN
         self._nest: Nest | None = None
@@ -481,6 +483,9 @@ class Episode:
             try:
                 keep_begins(nest)
                 nest.play()
+                if self._reads:
+                    # Forests are begun one for each node that is asked for alone.
+                    nest.states([*self._reads, *self._watching.paths])
                 if not self._people:
                     look_around(nest)
                 plain, task_seed = self.task.plain(), self.task.seed

@@ -18,6 +18,9 @@ class Watch:
     Args:
         task: Task; its own goal has the name "", goals of agents have the names of the agents.
         start: Tick at which the first round begins.
+
+    Attributes:
+        paths: Paths of the simulators that the goals are about.
     """
 
     def __init__(self, task: Task, start: int) -> None:
@@ -37,7 +40,7 @@ class Watch:
         }
         named = {path for goal in goals.values() for path in goal.paths}
         self._limits_messages = any(goal.messages is not None for goal in goals.values())
-        self._paths = sorted({"/", *map(path_text, named)})
+        self.paths = sorted({"/", *map(path_text, named)})
 
     def up_to_now(self, nest: Nest) -> Mapping[str, Progress]:
         """Return the progress of all goals up to the nest's tick."""
@@ -45,7 +48,7 @@ class Watch:
             if self._seen < self._start:
                 self._feed(self._start, nest.at(self._start))
                 self._seen = self._start
-            for tick, states in nest.each_tick(self._paths, self._seen, nest.tick, self._walk):
+            for tick, states in nest.each_tick(self.paths, self._seen, nest.tick, self._walk):
                 self._feed(tick, states)
                 del states  # what somebody holds is read before the next tick
             self._seen = nest.tick
@@ -53,7 +56,7 @@ class Watch:
 
     def _feed(self, tick: int, states: Any) -> None:
         views: dict[BeliefPath, State] = {}
-        for path in self._paths:
+        for path in self.paths:
             view = states[path]
             views[tuple(name for name in path.split("/") if name)] = getattr(view, "state", view)
         look = looking_at(views)

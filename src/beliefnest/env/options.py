@@ -1,0 +1,131 @@
+"""Options of environments, and their checks."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from beliefnest.env.bounds import Phrases
+from beliefnest.errors import InputError, PathError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.timeline.run_records import Senses
+from beliefnest.world.paths import parse_path, path_text, paths_below
+from beliefnest.world.seeds import checked_seed
+from beliefnest.world.texts import fault_of
+from beliefnest.world.values import Position
+from beliefnest.worlds.names import check_world
+
+RENDER_MODES = ("human", "rgb_array")
+
+
+@dataclass(frozen=True)
+class EnvironmentOptions:
+    """Options of an environment; the arguments of `parallel_env`, with the same names."""
+
+    world: str = "scripted"
+    actions: Literal["skills", "programs", "flat"] = "skills"
+    observations: Literal["arrays", "dict"] = "arrays"
+    agents: tuple[str, ...] | None = None
+    nested: int | tuple[str, ...] = ()
+    phrases: Phrases | Sequence[str] = ()
+    items: tuple[str, ...] = ()
+    cells: tuple[Position, ...] = ()
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    reward: Callable[[Nest, str], float] | None = None
+    ends: Callable[[Nest], bool] | None = None
+    max_steps: int | None = None
+    step_ticks: int | None = None
+    timeout_ticks: int | None = None
+    plays_script: bool = False
+    senses: Senses | None = None
+    render_mode: Literal["rgb_array", "human"] | None = None
+    render_path: str = "/"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        check_world(self.world, servers=False)
+        if self.senses not in (None, "world", "percepts"):
+            raise InputError(f"senses is {self.senses!r}; it is 'world' or 'percepts'")
+        if self.actions not in ("skills", "programs", "flat"):
+            raise InputError(f"actions is {self.actions!r}; it is 'skills', 'programs' or 'flat'")
+        if self.observations not in ("arrays", "dict"):
+            raise InputError(f"observations is {self.observations!r}; it is 'arrays' or 'dict'")
+        if self.render_mode not in (None, *RENDER_MODES):
+            raise InputError(
+                f"render_mode is {self.render_mode!r}; it is {' or '.join(RENDER_MODES)}, or None"
+            )
+        env_seed(self.seed)
+        if isinstance(self.nested, int) and (isinstance(self.nested, bool) or self.nested < 0):
+            raise InputError(f"nested is {self.nested!r}; give paths, or a depth from 0 on")
+        for name, texts in (("phrases", self.phrases), ("items", self.items)):
+            if isinstance(texts, str) or not all(isinstance(each, str) for each in texts):
+                raise InputError(f"{name} is {texts!r:.100}; give a list of texts")
+        if faults := list(filter(None, map(fault_of, self.phrases))):
+            raise InputError(f"phrases has {faults[0]}")
+        counts = ("max_steps", "step_ticks", "timeout_ticks")
+        for name in counts:
+            number = getattr(self, name)
+            if number is not None and (not isinstance(number, int) or number < 1):
+                raise InputError(f"{name} is {number!r}; it must be at least 1, or None")
+        for name, function in (("reward", self.reward), ("ends", self.ends)):
+            if function is not None and not callable(function):
+                raise InputError(f"{name} is {function!r}; give a function, or None")
+
+    def check_scenario(self) -> None:
+        """Check options that only tasks can have.
+
+        Raises:
+            InputError: Steps with a fixed number of ticks are not possible.
+        """
+        if self.step_ticks and (self.actions == "programs" or self.world != "scripted"):
+            raise InputError(
+                "step_ticks is for tasks, and for calls of skills in the scripted world; elsewhere "
+                "a step ends with the last program: leave it out"
+            )
+
+    def check_task(self) -> None:
+        """Check that no option is given that tasks do not have.
+
+        Raises:
+            InputError: An option has no effect in tasks.
+        """
+        if self.senses == "world" or self.timeout_ticks is not None or self.plays_script:
+            raise InputError(
+                "a task is played with the knowledge of each agent, in rounds of step_ticks, after "
+                "its script: leave senses and timeout_ticks out, and plays_script"
+            )
+
+    @property
+    def said(self) -> Phrases:
+        """Utterances with their claims."""
+        if isinstance(self.phrases, Mapping):
+            return self.phrases
+        return dict.fromkeys(self.phrases, ())
+
+
+def env_seed(seed: object) -> int:
+    """Return a seed as Gymnasium has them; raise InputError for others."""
+    number = checked_seed(seed)
+    if number < 0:
+        raise InputError(f"seed is {number}; environments take whole numbers from 0 on")
+    return number
+
+
+def nested_paths(
+    nested: int | Sequence[str], acting: Sequence[str], agents: Sequence[str]
+) -> tuple[tuple[str, ...], ...]:
+    """Return the paths of the beliefs for the infos, the deepest first."""
+    if isinstance(nested, int):
+        chosen = {
+            path
+            for agent in acting
+            for path in paths_below((agent,), max(0, nested - 1), agents)[1:]
+        }
+    else:
+        chosen = {parse_path(path, agents) for path in nested}
+        for path in chosen:
+            if len(path) < 2 or path[0] not in acting:
+                raise PathError(
+                    f"{path_text(path)!r} is not a belief of an acting agent about another's; "
+                    f"name one such as /{acting[0]}/{agents[-1]}"
+                )
+    return tuple(sorted(chosen, key=lambda path: (-len(path), path)))
