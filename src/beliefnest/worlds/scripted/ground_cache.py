@@ -1,6 +1,6 @@
 """Cache of the ground on which programs of the scripted world walk, one for each terrain."""
 
-from typing import TypeVar
+from typing import Any
 
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
@@ -9,8 +9,6 @@ from beliefnest.world.values import Box
 from beliefnest.worlds.scripted.footpaths import Ground
 
 _MOST = 32
-_Key = TypeVar("_Key")
-_Value = TypeVar("_Value")
 
 
 class Grounds:
@@ -39,11 +37,8 @@ class Grounds:
             ground = self._equal[content]
         # Keep the blocks alive, so that no other ones get their id.
         self._same[id(grid)] = (grid, ground)
-        _keep_latest(self._same)
-        _keep_latest(self._equal)
+        caches: tuple[dict[Any, Any], ...] = (self._same, self._equal)
+        for kept in caches:
+            while len(kept) > _MOST:
+                del kept[next(iter(kept))]
         return ground
-
-
-def _keep_latest(kept: dict[_Key, _Value]) -> None:
-    while len(kept) > _MOST:
-        del kept[next(iter(kept))]

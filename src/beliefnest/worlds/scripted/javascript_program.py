@@ -295,7 +295,7 @@ class JavaScriptProgram:
         kind, window = self._object(wire)
         if isinstance(window, OpenWindow):
             if name == window.gives:
-                return [_item(*each) for each in window.items().items()]
+                return _plain([{"name": name, "count": n} for name, n in window.items().items()])
             if name == "close":
                 return _UNDEFINED
         if kind != "bot" or name not in _CALLS:
@@ -480,10 +480,6 @@ def _is_plain_place(wires: list[Any]) -> bool:
     if not wires or not isinstance(wires[0], dict) or wires[0].get("$") != "v":
         return False
     return all(type(part) in (int, float) and abs(part) < _NEAR for part in wires[0]["c"])
-
-
-def _item(name: str, count: int) -> Any:
-    return _plain({"name": name, "count": count})
 
 
 def _plain(value: Any) -> Any:

@@ -31,10 +31,8 @@ _KEY = re.compile(r"[A-Za-z][\w ]*", re.ASCII)
 """Keys that keep their order in JavaScript and mean nothing there."""
 _BOT = {"$": "h", "id": 0}
 _CLAIMS = {
-    b"located": ("located", "item", "place"),
-    b"absent": ("absent", "item", "place"),
-    b"positionOf": ("position", "agent", "place"),
-    b"blockAt": ("block", "place", "state"),
+    **{b"located": ("located", "item", "place"), b"absent": ("absent", "item", "place")},
+    **{b"positionOf": ("position", "agent", "place"), b"blockAt": ("block", "place", "state")},
 }
 """Functions that make claims: the kind, and the names of the arguments in order."""
 _ONE, _TWO, _THREE, _SOME = range(1, 2), range(2, 3), range(3, 4), range(1, 100)

@@ -4,14 +4,14 @@ A program's code before its first wait belongs to the first tick. A skill that i
 acts in the next ones. Agents act in the order of their programs.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.event_words import Announcement, announced
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import AgentState, Box, Event, Point
+from beliefnest.world.values import Event, Point
 from beliefnest.worlds.protocol import Aim, Fault, ProgramResult, RunRules, Sensed, SenseSource
 from beliefnest.worlds.scripted.bot_reads import BotReads
 from beliefnest.worlds.scripted.desk import Desk
@@ -176,9 +176,8 @@ class RunningPrograms:
 
         def all_of_it() -> Sensed:
             news = announced(_said_to(agent, latest), agent)
-            return Sensed(
-                world.terrain, _others(world.agents, agent), announced=news, signs=world.signs
-            )
+            others = {name: each for name, each in world.agents.items() if name != agent}
+            return Sensed(world.terrain, others, announced=news, signs=world.signs)
 
         def ground() -> Ground:
             return grounds.of(world.box, world.terrain)
@@ -188,7 +187,7 @@ class RunningPrograms:
             agent,
             world,
             # For full knowledge use the true ground, which needs no map of all agents at each step.
-            known=_known(world.box, sense, grounds) if agent in senses else ground,
+            known=(lambda: grounds.of(world.box, sense().blocks)) if agent in senses else ground,
             others=lambda: sense().agents,
             signs=lambda: sense().signs,
             ground=ground,
@@ -220,10 +219,6 @@ def _begin_of(rules: RunRules, agent: str, now: int) -> int:
     """Return the tick at which a program first began."""
     past = rules.past.get(agent)
     return now if past is None else past.tick
-
-
-def _known(box: Box, sense: SenseSource, grounds: Grounds) -> Callable[[], Ground]:
-    return lambda: grounds.of(box, sense().blocks)
 
 
 def _said_to(agent: str, events: Sequence[Event]) -> list[Event]:
@@ -339,10 +334,6 @@ def _aim(tick: int, made: Mapping[str, Any]) -> Aim:
 def _point(value: Sequence[float]) -> Point:
     x, y, z = value
     return (float(x), float(y), float(z))
-
-
-def _others(agents: Mapping[str, AgentState], me: str) -> Mapping[str, AgentState]:
-    return {name: agent for name, agent in agents.items() if name != me}
 
 
 def _result(

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 from beliefnest.skills.manifests import skills
@@ -48,7 +47,7 @@ def error_of(name: str, error: Mapping[str, Any]) -> Mapping[str, Any]:
     reason = {"reason": error["reason"]} if error["reason"] else {}
     error_fields = {"$": "e", "skill": name, "kind": "skill", **reason}
     # Errors of the bot's own methods do not begin with their names.
-    if name not in _skills():
+    if all(each.name != name for each in skills()):
         return {**error_fields, "message": error["message"], "name": "Error"}
     return {**error_fields, "message": f"{name}: {error['message']}", "name": "SkillError"}
 
@@ -57,8 +56,3 @@ def fault_of(error: Mapping[str, Any]) -> Fault:
     """Return a described error as a fault of the program."""
     keys = ("line", "column", "skill", "reason")
     return Fault(error["message"], error["kind"], **{key: error.get(key) for key in keys})
-
-
-@cache
-def _skills() -> frozenset[str]:
-    return frozenset(each.name for each in skills())
