@@ -362,8 +362,9 @@ class JavaScriptProgram:
             is_event = event in parts().events
             if is_event:
                 raise RefusedError(f"the scripted world has no event {event}; {_ELSEWHERE}")
+            shown = f'the text "{event[:40]}"' if isinstance(event, str) else event
             raise RefusedError(
-                f"a program cannot listen to the event {_shown(event)}; "
+                f"a program cannot listen to the event {shown}; "
                 f"it can to {', '.join(parts().events)}"
             )
         most = parts().limits.listeners
@@ -489,7 +490,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_plain(each) for each in value]
     return value
-
-
-def _shown(event: object) -> str:
-    return f'the text "{event[:40]}"' if isinstance(event, str) else str(event)

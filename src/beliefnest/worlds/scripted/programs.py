@@ -147,7 +147,9 @@ class RunningPrograms:
                 _answer(run, number, ok=ok, value=value)
                 _take_calls(run)
         for run in self._runs:
-            if run.end_tick is None and run.program.ended and not _goes_on(run):
+            # An act may be in progress that continues without its program.
+            goes_on = any(name not in _ENDS_WITH_PROGRAM for name, _ in run.doing.values())
+            if run.end_tick is None and run.program.ended and not goes_on:
                 run.end_tick = self._world.now
 
     def time_out(self, timeout_ticks: int) -> None:
@@ -261,11 +263,6 @@ def _act(run: _Run) -> list[tuple[int, bool, object]]:
         except BeliefNestError as error:
             ended.append((number, False, _told(error)))
     return ended
-
-
-def _goes_on(run: _Run) -> bool:
-    """Return True if an act is in progress that continues without its program."""
-    return any(name not in _ENDS_WITH_PROGRAM for name, _ in run.doing.values())
 
 
 def _answer(run: _Run, number: int, *, ok: bool, value: Any) -> None:

@@ -96,7 +96,8 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
 
 def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doing:
     place, sign_claims = block_in(position), _claims(claims)
-    text = "\n".join(lines) if _is_lines(lines) else lines
+    is_list = isinstance(lines, list | tuple) and all(isinstance(line, str) for line in lines)
+    text = "\n".join(lines) if is_list else lines
     if not isinstance(text, str):
         raise SkillError(f"text must be a text; it is {quoted(text)}")
     if fault := sign_fault(text):
@@ -106,10 +107,6 @@ def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doin
         raise hand.lacking("sign", place, _SIGN)
     yield 0
     hand.world.write_sign(hand.name, place, text, sign_claims)
-
-
-def _is_lines(value: Any) -> bool:
-    return isinstance(value, list | tuple) and all(isinstance(line, str) for line in value)
 
 
 def _look_at(hand: Hand, position: Any) -> Doing:
