@@ -145,8 +145,9 @@ def _started_compiler() -> subprocess.Popen[bytes]:
     """Start a process that starts the compiler, and ends at once.
 
     The compiler is no child of this process, which may live on, and nobody waits for it.
+    Ctrl-C does not reach its process group. Linux heeds its priority only within one session.
     """
-    begin = "import subprocess, sys; subprocess.Popen(sys.argv[1:], start_new_session=True)"
+    begin = "import subprocess, sys; subprocess.Popen(sys.argv[1:], process_group=0)"
     nowhere = subprocess.DEVNULL
     return subprocess.Popen(
         [sys.executable, "-c", begin, sys.executable, "-m", __name__],
