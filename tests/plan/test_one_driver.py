@@ -16,13 +16,10 @@ PLAYERS = {
     "Parallel": {"plan/jobs.py"},
     # One ledger, beside the times of cells.
     "SharedBudget": set(),
-    # A search keeps its answers, by which it continues: what it asks next depends on them.
-    "append_line": {
-        *("plan/spending.py", "studies/items/search_folder.py", "studies/study_folder.py"),
-    },
+    "append_line": {"plan/spending.py", "studies/study_folder.py"},
     # Commands that play many: a run, a study, a study played again, a suite.
     "run_cells": {
-        *("cli/run.py", "studies/study.py", "studies/reproducing.py", "suites/playing.py"),
+        *("cli/run.py", "studies/study.py", "studies/reproducing.py", "studies/suite_playing.py"),
     },
 }
 

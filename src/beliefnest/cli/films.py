@@ -15,6 +15,7 @@ from beliefnest.cli.options import SuiteOptions
 from beliefnest.cli.playing import playing, status_of, write_tables
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.pictures.scatter import Dot, ScatterPanel, ScatterRow, scatter_figure
+from beliefnest.studies.suite_playing import play_suite
 from beliefnest.suites import FILMS
 from beliefnest.suites.films.agreement import PUBLISHED, JudgesAgreement, agreement, interval
 from beliefnest.suites.films.cells import FILM_KIND, film_cells
@@ -29,7 +30,6 @@ from beliefnest.suites.films.film import (
 )
 from beliefnest.suites.films.film_files import read_films
 from beliefnest.suites.films.film_inference import LESIONS, Lesion
-from beliefnest.suites.playing import play_suite
 
 _MODELS: tuple[Lesion | None, ...] = (None, *LESIONS)
 _WORDS: Mapping[Lesion | None, str] = {

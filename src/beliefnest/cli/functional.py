@@ -16,7 +16,7 @@ from beliefnest.studies.items.functional.certifying import (
     certified,
     chance_of,
 )
-from beliefnest.studies.items.functional.pairing import by_order, paired, plot_pairs
+from beliefnest.studies.items.functional.pairing import FUNCTIONAL, by_order, paired, plot_pairs
 from beliefnest.studies.items.functional.siblings import check_functional, families_of
 from beliefnest.studies.study import Study
 
@@ -33,15 +33,10 @@ def run_functional(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The study or a task is wrong, or an episode has no result.
     """
-    for option in ("report", "verify", "held_out", "set_version", "changes"):
-        if getattr(options, option):
-            raise InputError(
-                f"--{option.replace('_', '-')} is for sets of items; leave out --functional"
-            )
     design = check_functional(Study.load(options.study).design, str(options.study))
     families, seeds, jobs = list(families_of(design)), design.seeds, options.jobs
     model, repeats = options.model, design.repeats
-    own = {"functional.json", "functional.png", *(each.folder for each in families)}
+    own = {FUNCTIONAL, "functional.png", *(each.folder for each in families)}
     there = {each.name for each in options.folder.glob("*")}
     if others := there - own:
         raise InputError(f"{options.folder} holds other files ({min(others)}); name another folder")
@@ -60,7 +55,7 @@ def run_functional(options: ItemsOptions) -> int:
         report.append(_pairs(rows))
         with replacing(options.folder / "functional.png") as out:
             plot_pairs(pairs, done).savefig(out, format="png", dpi=150)
-    replace_file(options.folder / "functional.json", json.dumps(content, indent=2) + "\n")
+    replace_file(options.folder / FUNCTIONAL, json.dumps(content, indent=2) + "\n")
     faults = [
         f"{each.family}, order {each.order}: {fault}" for each in done for fault in each.faults
     ]

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from rich.table import Table
@@ -13,15 +14,22 @@ from beliefnest.cli.report import cost_text
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.files import replace_file
 from beliefnest.llm.budget import RunLimits
+from beliefnest.plan.cells import Keyed
 from beliefnest.scenarios.judging import unanswered_words
 from beliefnest.studies.counting import count_rows
+from beliefnest.studies.items.cells import ITEM_KIND, item_cells
+from beliefnest.studies.items.functional.pairing import OrderGap, read_gaps
+from beliefnest.studies.items.people import people_cells
+from beliefnest.studies.items.results import PublishedSet, check_results, results_of
 from beliefnest.studies.result import StudyResult
-from beliefnest.suites.items.cells import ITEM_KIND, item_cells
-from beliefnest.suites.items.results import PublishedSet, check_results, results_of
-from beliefnest.suites.playing import play_suite
+from beliefnest.studies.suite_playing import play_suite
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 
 RESULTS = "results.jsonl"
+
+_Gaps = Mapping[str, Mapping[int, OrderGap]]
+"""Literal minus functional, by model and order."""
 
 
 def run_models(options: ItemsOptions) -> int:
@@ -34,7 +42,11 @@ def run_models(options: ItemsOptions) -> int:
     models = [each.strip() for each in (options.models or "").split(",")]
     if not all(models) or len({*models}) < len(models):
         raise InputError(f"--models is {options.models!r}; name each model once, with commas")
-    cells = item_cells(items.name, items.choices, models)
+    gaps = _gaps(options.gap or (), models)
+    people, notes = (
+        people_cells(items.name, items.choices, options.people) if options.people else ([], [])
+    )
+    cells: list[Keyed] = [*item_cells(items.name, items.choices, models), *people]
     about = {"suites": [items.name], "models": models, "version": items.version}
     limits = RunLimits(options.max_tokens, options.max_cost)
     with playing(items.name, folder) as (place, on_progress):
@@ -43,8 +55,8 @@ def run_models(options: ItemsOptions) -> int:
         )
     write_tables(result)
     replace_file(folder / RESULTS, results_of(items, result.rows))
-    lines = [*_left_out(items), *_figure(result, folder), f"results: {folder / RESULTS}"]
-    _print(options, {"folder": str(folder)}, result.rows, lines)
+    lines = [*notes, *_left_out(items), *_figure(result, folder), f"results: {folder / RESULTS}"]
+    _print(options, {"folder": str(folder)}, result.rows, lines, gaps)
     check_all_played(result)
     return 0
 
@@ -55,10 +67,8 @@ def run_verify_results(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The set or the file cannot be read.
     """
-    if options.models or options.out:
-        raise InputError("--verify-results takes the folder of a set alone, without --models or -o")
-    items = PublishedSet.read(options.study)
-    file = options.verify_results or options.study / RESULTS
+    items, file = PublishedSet.read(options.study), options.verify_results
+    assert file is not None
     checked = check_results(items, file)
     lines = [
         *checked.faults,
@@ -70,6 +80,20 @@ def run_verify_results(options: ItemsOptions) -> int:
     report = {"results": str(file), "faults": list(checked.faults), "missing": checked.missing}
     _print(options, report, checked.rows, [*lines, *([] if lines else [f"{file}: sound"])])
     return int(bool(lines))
+
+
+def _gaps(folders: Sequence[Path], models: Sequence[str]) -> _Gaps:
+    """Return the gaps of models by order; raise InputError if a model is none of the compared."""
+    gaps: dict[str, Mapping[int, OrderGap]] = {}
+    for folder in folders:
+        model, own = read_gaps(folder)
+        if model not in models:
+            raise InputError(
+                f"{folder} has episodes of {quoted(model)}, and --models is {','.join(models)}; "
+                "add the model, or leave out the folder"
+            )
+        gaps[model] = own
+    return gaps
 
 
 def _left_out(items: PublishedSet) -> Iterator[str]:
@@ -95,15 +119,20 @@ def _print(
     report: Mapping[str, Any],
     rows: Sequence[Mapping[str, Any]],
     lines: Sequence[str],
+    gaps: _Gaps = MappingProxyType({}),
 ) -> None:
     groups = [*count_rows(rows, ["model"]), *count_rows(rows, ["model", "order"])]
+    for group in groups:
+        if gap := gaps.get(group["model"], {}).get(group.get("order", -1)):
+            group |= {"functional": gap.functional.rate, "gap": gap.difference, "gap_p": gap.p}
     parts: list[Printed] = [_table(groups), *lines]
     print_report({**report, "models": groups}, parts, as_json=options.json)
 
 
 def _table(groups: Sequence[Mapping[str, Any]]) -> Table:
     spent = ("tokens", "cost") if any(group["tokens"] for group in groups) else ()
-    numbers = ("order", "items", "right", "accuracy", "95 %", "chance", *spent)
+    acted = ("functional", "gap") if any("gap" in group for group in groups) else ()
+    numbers = ("order", "items", "right", "accuracy", "95 %", "chance", *acted, *spent)
     table = result_table("model", *numbers, "not answered", right=numbers)
     for group in groups:
         judged = group["judged"]
@@ -115,7 +144,18 @@ def _table(groups: Sequence[Mapping[str, Any]]) -> Table:
             f"{group['accuracy']:.1%}" if judged else "-",
             f"{group['low']:.0%} to {group['high']:.0%}" if judged else "-",
             "-" if group["chance"] is None else f"{group['chance']:.0%}",
-            *([f"{group['tokens']:,}", cost_text(group["cost"])] if spent else []),
+            *(_gap_texts(group) if acted else ()),
+            *(_spent_texts(group) if spent else ()),
             unanswered_words(group),
         )
     return table
+
+
+def _gap_texts(group: Mapping[str, Any]) -> tuple[str, str]:
+    if "gap" not in group:
+        return "-", "-"
+    return f"{group['functional']:.0%}", f"{group['gap']:+.0%} (p {group['gap_p']:.3f})"
+
+
+def _spent_texts(group: Mapping[str, Any]) -> tuple[str, str]:
+    return (f"{group['tokens']:,}", cost_text(group["cost"])) if group["tokens"] else ("-", "-")

@@ -1,154 +1,74 @@
-"""`beliefnest items`: the questions of a study as a set of benchmark items."""
+"""`beliefnest items`: the use of the command that options choose."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 
-from rich.table import Table
-
-from beliefnest.cli.console import Printed, print_report, progress_on, result_table
+from beliefnest.cli.functional import run_functional
+from beliefnest.cli.item_models import run_models, run_verify_results
+from beliefnest.cli.item_sets import run_make, run_verify
 from beliefnest.cli.options import ItemsOptions
 from beliefnest.errors import InputError
-from beliefnest.studies.items.item_set import ItemSet, check_folder, read_description
-from beliefnest.studies.items.parquet import parquet_differences, write_parquet_of
-from beliefnest.studies.items.report import report_of
-from beliefnest.studies.study import Study
-from beliefnest.world.words import counted, listed
 
-_MOST_DROPPED = 5
+
+@dataclass(frozen=True, slots=True)
+class ItemsUse:
+    """Use of the command.
+
+    Attributes:
+        chosen_by: Option that chooses it; empty: no other use is chosen.
+        line: Its command line.
+        run: Function that returns the exit status.
+        takes: Further options that it takes.
+    """
+
+    chosen_by: str
+    line: str
+    run: Callable[[ItemsOptions], int]
+    takes: tuple[str, ...]
+
+
+_ALWAYS = ("study", "json")
+_USES = (
+    ItemsUse(
+        "models",
+        "SET --models A,B -o DIR",
+        run_models,
+        ("out", "people", "gap", "max_tokens", "max_cost", "jobs"),
+    ),
+    ItemsUse("verify_results", "SET --verify-results FILE", run_verify_results, ()),
+    ItemsUse("functional", "STUDY -o DIR --functional", run_functional, ("out", "model", "jobs")),
+    ItemsUse("verify", "STUDY -o SET --verify", run_verify, ("out", "report", "check_embedded")),
+    ItemsUse(
+        "",
+        "STUDY -o SET",
+        run_make,
+        ("out", "report", "parquet", "check_embedded", "held_out", "set_version", "changes"),
+    ),
+)
 
 
 def run_items(options: ItemsOptions) -> int:
-    """Make a set of items, and write it or compare it with its folder; return the exit status.
+    """Run the use that the options choose; return the exit status.
 
     Raises:
-        BeliefNestError: The study or the folder is wrong, or a script failed.
+        InputError: An option belongs to another use.
+        BeliefNestError: See the functions of uses.
     """
-    if options.models is not None or options.verify_results:
-        from beliefnest.cli.item_models import run_models, run_verify_results
-
-        if options.verify_results:
-            return run_verify_results(options)
-        return run_models(options)
-    if options.functional:
-        from beliefnest.cli.functional import run_functional
-
-        return run_functional(options)
-    if options.model is not None:
-        raise InputError("--model answers and plays with --functional; give both, or none")
-    if options.study.is_dir():
-        raise InputError(f"{options.study} is a folder; add --models to ask models its items")
-    set_options = _set_options(options)
-    study = Study.load(options.study)
-    with progress_on(options.study.stem) as on_progress:
-        made = study.items(**set_options, on_item=on_progress)
-        compared, differing = study.check_items(made, options.check_embedded, on_progress)
-    if options.verify:
-        there = read_description(options.folder)
-        differing += replace(made, made_with=there.made_with).differences(options.folder)
-        differing += parquet_differences(made, options.folder)
-        if differing and there.made_with != made.made_with:
-            of_set, here = (_versions(each) for each in (there.made_with, made.made_with))
-            differing.append(f"made with {of_set}, and again with {here}: that may be the cause")
-    else:
-        made.write(options.folder)
-        if options.parquet:
-            write_parquet_of(made, options.folder)
-    unanswerable = sum(each.is_unanswerable for each in made.dropped)
-    report = report_of(made.items) if options.report else {}
-    summary = {
-        "folder": str(options.folder),
-        "items": len(made.items),
-        "dropped": len(made.dropped),
-        "compared": compared,
-        "differences": differing,
-        **({"report": report} if report else {}),
-    }
-    print_report(summary, _parts(options, made, summary), as_json=options.json)
-    return int(bool(differing or unanswerable))
+    names = [each.name for each in fields(options) if getattr(options, each.name) != each.default]
+    use = next(each for each in _USES if not each.chosen_by or each.chosen_by in names)
+    for name in names:
+        if name not in (*_ALWAYS, use.chosen_by, *use.takes):
+            others = [each.line for each in _USES if name in (each.chosen_by, *each.takes)]
+            raise InputError(
+                f"{_option(name)} belongs to {' or '.join(map(_command, others))}, and this is "
+                f"{_command(use.line)}; leave it out, or write the other"
+            )
+    return use.run(options)
 
 
-def _versions(made_with: Mapping[str, str]) -> str:
-    return listed([f"{name} {version}" for name, version in made_with.items()])
+def _command(line: str) -> str:
+    return f"`beliefnest items {line}`"
 
 
-def _set_options(options: ItemsOptions) -> dict[str, Any]:
-    """Return name, share, version and changes of the set; with --verify those of the folder."""
-    options_of_set = {
-        "held_out": options.held_out,
-        "version": options.set_version,
-        "changes": options.changes,
-    }
-    if not options.verify:
-        own = {name: value for name, value in options_of_set.items() if value is not None}
-        check_folder(options.folder, options.held_out or 0.0)
-        return {"name": options.study.stem, **own}
-    for name, value in options_of_set.items():
-        if value is not None:
-            option = "set-version" if name == "version" else name.replace("_", "-")
-            raise InputError(f"--{option} is for writing a set; --verify reads it from the folder")
-    there = read_description(options.folder)
-    return {name: getattr(there, name) for name in ("name", *options_of_set)}
-
-
-def _parts(options: ItemsOptions, made: ItemSet, summary: Mapping[str, Any]) -> Iterator[Printed]:
-    differing = summary["differences"]
-    if report := summary.get("report"):
-        yield from (_counts(report), _positions(report), _shortcuts(report))
-    for each in made.dropped[:_MOST_DROPPED]:
-        yield f"dropped: {each.scenario}, probe {each.probe}: {each.why}"
-    if len(made.dropped) > _MOST_DROPPED:
-        yield f"and {len(made.dropped) - _MOST_DROPPED} more; all of them are in dropped.jsonl"
-    unanswerable = sum(each.is_unanswerable for each in made.dropped)
-    if unanswerable:
-        yield (
-            f"{counted(unanswerable, 'question')} of {len(made.dropped) + len(made.items)} dropped "
-            "for their options; mend these in the scenario"
-        )
-    yield from differing
-    if options.check_embedded:
-        yield f"compared with the embedded world: {counted(summary['compared'], 'item')}"
-    size = ", ".join(f"{counted(len(each), part)}" for part, each in _sizes(made))
-    if not options.verify:
-        yield f"{options.folder}: {size}"
-    elif not differing:
-        public = read_description(options.folder).public_only(options.folder)
-        part = "; the held-out part is not there, and the rest" if public else ";"
-        yield f"{options.folder}: {size}{part} made again with the same bytes"
-
-
-def _sizes(made: ItemSet) -> Iterator[tuple[str, tuple[object, ...]]]:
-    for part, items in made.parts.items():
-        yield "item" if part == "public" else f"{part} item", items
-    yield "dropped question", made.dropped
-
-
-def _counts(report: Mapping[str, Any]) -> Table:
-    table = result_table("items by", "", right=["items"])
-    for name, counts in report["by"].items():
-        table.add_row(name, ", ".join(f"{value}: {n}" for value, n in counts.items()))
-    return table
-
-
-def _positions(report: Mapping[str, Any]) -> Table:
-    table = result_table("options", "right at 1, 2, ...", "same text", "skeletons")
-    same = counted(len(report["same_text"]), "group")
-    skeletons = sum(report["skeletons"].values())
-    for options, places in report["positions"].items():
-        table.add_row(str(options), " ".join(map(str, places)), same, str(skeletons))
-    return table
-
-
-def _shortcuts(report: Mapping[str, Any]) -> Table:
-    table = result_table("shortcut", "items", "answered", "accuracy", "95 %", "chance", "at chance")
-    for row in report["shortcuts"]:
-        table.add_row(
-            row["shortcut"],
-            str(row["items"]),
-            str(row["answered"]),
-            f"{row['accuracy']:.0%}",
-            f"{row['low']:.0%} to {row['high']:.0%}",
-            f"{row['chance']:.0%}",
-            "yes" if row["at_chance"] else "NO",
-        )
-    return table
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"

@@ -416,6 +416,14 @@ class ItemsOptions:
     models: Annotated[
         str | None, typer.Option(help="Models that answer a set, separated by commas.")
     ] = None
+    people: Annotated[
+        list[Path] | None,
+        typer.Option(help="File or folder of participants' answers, to stand beside --models."),
+    ] = None
+    gap: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="DIR", help="Folder of --functional with one of --models."),
+    ] = None
     verify_results: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Results of models on a set to check.")
     ] = None
@@ -456,6 +464,7 @@ class SearchItemsOptions:
         float | None,
         typer.Option(help="Cost limit in US dollars; default: that of the study.", min=0),
     ] = None
+    jobs: Annotated[int, typer.Option(min=1, help="Questions to ask in parallel.")] = 1
     json: Json = False
 
 

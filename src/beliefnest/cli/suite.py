@@ -11,8 +11,8 @@ from beliefnest.cli.films import run_films
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.cli.playing import playing, status_of, write_tables
 from beliefnest.errors import InputError
+from beliefnest.studies.suite_playing import play_suite
 from beliefnest.suites import FILMS, story_reader
-from beliefnest.suites.playing import play_suite
 from beliefnest.suites.stories.cells import STORY_KIND, story_cells
 from beliefnest.suites.stories.data import ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.suite import JudgedAnswer, Score, score, scores_by_order

@@ -1,8 +1,5 @@
 """Kinds of cells of studies; a study's plan names its kind, and nothing else tells it."""
 
-from dataclasses import dataclass
-from typing import Any
-
 from beliefnest.importing import installed, load
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.forms import (
@@ -13,32 +10,9 @@ from beliefnest.studies.forms import (
     RunPlan,
     ScenariosPlan,
 )
+from beliefnest.studies.items.cells import ITEM_KIND
 from beliefnest.studies.rows import PROBES
-from beliefnest.studies.table import Table
-
-
-@dataclass(frozen=True, slots=True)
-class CellKind:
-    """Kind of cells.
-
-    Attributes:
-        name: Name in the plan: what is played.
-        plan: Form of plans.
-        cell: Form of the files of cells with a result.
-        table: Form of the table.
-        subject: Part of a cell's key that names what is played. Plans list all under its plural.
-        players: Key of plans that lists who is asked or plays.
-        player: Word for one of them, and its plural.
-    """
-
-    name: str
-    plan: type[Any]
-    cell: type[Any]
-    table: Table
-    subject: str
-    players: str = "models"
-    player: tuple[str, str] = ("model", "models")
-
+from beliefnest.studies.table import CellKind
 
 SCENARIO_KIND = CellKind(
     name="scenarios",
@@ -63,7 +37,7 @@ EPISODE_KIND = CellKind(
     players="players",
     player=("policy", "policies"),
 )
-_KINDS = {each.name: each for each in (SCENARIO_KIND, RUN_KIND, EPISODE_KIND)}
+_KINDS = {each.name: each for each in (SCENARIO_KIND, RUN_KIND, EPISODE_KIND, ITEM_KIND)}
 _GROUP = "beliefnest.kinds"
 """Group of entry points of kinds that stand above studies, by name: objects `CellKind`."""
 

@@ -16,9 +16,9 @@ from beliefnest.scenarios.judging import LOST, unanswered_words
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import DRAWS
 from beliefnest.studies.counting import Row
-from beliefnest.studies.kinds import CellKind
 from beliefnest.studies.participants.exclusions import excluded_words
 from beliefnest.studies.study_record import StudyRecord
+from beliefnest.studies.table import CellKind
 from beliefnest.world.words import counted
 
 MethodsForm = Literal["markdown", "latex"]

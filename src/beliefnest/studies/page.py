@@ -12,8 +12,7 @@ from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.counting import Pairs
-from beliefnest.studies.kinds import CellKind
-from beliefnest.studies.table import variation_columns
+from beliefnest.studies.table import CellKind, variation_columns
 from beliefnest.world.texts import visible
 from beliefnest.world.words import counted
 

@@ -26,10 +26,11 @@ from beliefnest.studies.comparing import ERROR, PairedDifference, differing_cont
 from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
 from beliefnest.studies.inputs import InputIndex
-from beliefnest.studies.kinds import EPISODE_KIND, CellKind
+from beliefnest.studies.kinds import EPISODE_KIND
 from beliefnest.studies.plainframe import csv_rows, read_csv_rows
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_record import StudyRecord
+from beliefnest.studies.table import CellKind
 from beliefnest.world.texts import quoted
 from beliefnest.worlds.minecraft.launching import ahead
 

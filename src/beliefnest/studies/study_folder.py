@@ -18,7 +18,8 @@ from beliefnest.plan.spending import append_line
 from beliefnest.plan.terms import Terms
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
 from beliefnest.studies.forms import FailedCell, PeopleForm, PlanKind, SecondsForm, read_marked
-from beliefnest.studies.kinds import RUN_KIND, CellKind, kind_named
+from beliefnest.studies.kinds import RUN_KIND, kind_named
+from beliefnest.studies.table import CellKind
 from beliefnest.world.texts import quoted
 
 _PLAN = "study.json"

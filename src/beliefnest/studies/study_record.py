@@ -10,14 +10,13 @@ from beliefnest.errors import InputError
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.guessing import mean_chance
-from beliefnest.studies.kinds import CellKind
 from beliefnest.studies.plainframe import Typed
 from beliefnest.studies.positions import choices_of, count_positions
 from beliefnest.studies.power import VariationSource
 from beliefnest.studies.power_sources import recorded_sources
 from beliefnest.studies.row_filter import RowFilter
 from beliefnest.studies.study_folder import StudyFolder
-from beliefnest.studies.table import Table, variation_columns
+from beliefnest.studies.table import CellKind, Table, variation_columns
 
 COMPARED = (
     *("one", "other", "pairs", "variations", "both", "only_one", "only_other", "difference"),

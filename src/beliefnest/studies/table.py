@@ -142,6 +142,29 @@ class Table:
             }
 
 
+@dataclass(frozen=True, slots=True)
+class CellKind:
+    """Kind of cells.
+
+    Attributes:
+        name: Name in the plan: what is played.
+        plan: Form of plans.
+        cell: Form of the files of cells with a result.
+        table: Form of the table.
+        subject: Part of a cell's key that names what is played. Plans list all under its plural.
+        players: Key of plans that lists who is asked or plays.
+        player: Word for one of them, and its plural.
+    """
+
+    name: str
+    plan: type[Any]
+    cell: type[Any]
+    table: Table
+    subject: str
+    players: str = "models"
+    player: tuple[str, str] = ("model", "models")
+
+
 def lost(content: Mapping[str, Any], *, is_judged: bool) -> dict[str, Any]:
     """Return what the rows of a cell without a result hold.
 

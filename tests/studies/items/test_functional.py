@@ -10,7 +10,7 @@ from tests.profiles import at_night, few_by_day
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.task import Task
 from beliefnest.studies.items.functional.certifying import Certificate, certified
-from beliefnest.studies.items.functional.pairing import LiteralFunctionalPair, by_order
+from beliefnest.studies.items.functional.pairing import LiteralFunctionalPair, by_order, read_gaps
 from beliefnest.studies.items.functional.siblings import TaskFamily
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "functional"
@@ -106,19 +106,23 @@ def test_a_model_answers_and_plays_and_a_figure_is_drawn(tmp_path, capsys):
     assert [each["family"] for each in told["pairs"]] == ["tell", ""]
     assert (tmp_path / "out" / "functional.png").exists()
     assert json.loads((tmp_path / "out" / "functional.json").read_text("utf-8")) == told
+    model, gaps = read_gaps(tmp_path / "out")
+    assert (model, [*gaps]) == ("first-option", [1])
+    assert gaps[1].difference == told["pairs"][-1]["difference"]
 
 
 @pytest.mark.parametrize("option", ["--report", "--verify"])
 def test_options_of_sets_are_refused(tmp_path, capsys, option):
     study = str(EXAMPLES / "study.yaml")
     assert run_command_line(["items", study, "-o", str(tmp_path), "--functional", option]) == 2
-    assert f"{option} is for sets of items" in capsys.readouterr().err
+    assert f"{option} belongs to `beliefnest items STUDY -o SET" in capsys.readouterr().err
 
 
 def test_a_model_is_refused_without_episodes(tmp_path, capsys):
     study = str(EXAMPLES / "study.yaml")
     assert run_command_line(["items", study, "-o", str(tmp_path), "--model", "offline"]) == 2
-    assert "--model answers and plays with --functional" in capsys.readouterr().err
+    err = capsys.readouterr().err
+    assert "--model belongs to `beliefnest items STUDY -o DIR --functional`, and this is" in err
 
 
 def test_a_study_of_scenarios_is_refused(tmp_path, capsys):

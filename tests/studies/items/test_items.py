@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import msgspec
 import pytest
+from tests.studies.items.building import invented
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
@@ -301,7 +302,10 @@ def test_options_that_give_no_right_answer_end_with_an_error(tmp_path, capsys):
     ("arguments", "told"),
     [
         (["--verify"], "there is no set of items"),
-        (["--verify", "--held-out", "0.5"], "--held-out is for writing a set"),
+        (
+            ["--verify", "--held-out", "0.5"],
+            "--held-out belongs to `beliefnest items STUDY -o SET`",
+        ),
         (["--held-out", "0.000001"], "holds back none of 2 seeds"),
         (["--held-out", "0.999999"], "holds back all of 2 seeds"),
         (["--set-version", ""], "the version of the set is ''"),
@@ -324,28 +328,15 @@ def test_a_folder_with_something_else_is_kept(folder, tmp_path, capsys):
 def records(*answers: tuple[str, str | None]) -> list[ItemRecord]:
     """Items with the options `a` and `b`; of each the right answer, and that of `reality`."""
     return [
-        ItemRecord(
+        invented(
             id=str(number),
             text=f"text {number} {right}",
             question="Where?",
             options=("a", "b"),
             right=right,
-            kind="item",
-            order=1,
-            path="/x",
-            told_by="/",
-            chain=("x",),
-            chance=0.5,
             family=f"family {number % 2}",
-            scenario="s",
-            condition=None,
-            variation="v",
-            factors={},
-            probe="p",
             seed=number,
-            tick=0,
             skeleton=str(number),
-            checked="follows",
             shortcuts={"reality": reality},
         )
         for number, (right, reality) in enumerate(answers)

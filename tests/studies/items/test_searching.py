@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import pytest
+from tests.studies.items.building import invented
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
-from beliefnest.llm.messages import Answer
-from beliefnest.studies.items.asking import judged_answer
-from beliefnest.studies.items.record import ItemRecord
+from beliefnest.errors import InputError
 from beliefnest.studies.items.search_folder import search_items
 from beliefnest.studies.items.searching import ItemSearch, judged_pairs
 from beliefnest.studies.items.space import Contrast
@@ -101,13 +100,17 @@ class InventedSpace:
 
     def questions(self, family, point, surface):
         return [
-            ItemRecord(
-                **{"id": json.dumps([point, surface, n]), "text": json.dumps([point, surface])},
-                **{"question": str(n), "options": ("a", "b"), "right": "a", "kind": "item"},
-                **{"order": n, "path": "/", "told_by": "/", "chain": ("ann",) * n, "chance": 0.5},
-                **{"family": family, "scenario": "", "condition": None, "variation": ""},
-                **{"factors": point, "probe": "", "seed": 0, "tick": 0, "skeleton": ""},
-                **{"checked": "follows", "shortcuts": {}},
+            invented(
+                id=json.dumps([point, surface, n]),
+                text=json.dumps([point, surface]),
+                question=str(n),
+                options=("a", "b"),
+                right="a",
+                order=n,
+                path="/",
+                chain=("ann",) * n,
+                family=family,
+                factors=point,
             )
             for n in range(5)
         ]
@@ -117,16 +120,12 @@ def fails(item):
     return item.order >= 3 or item.factors["moves"] == "2" or item.factors["honest"] == "false"
 
 
-def answered(item, ok):
-    return judged_answer(item, "m", Answer(f"Answer: {'a' if ok else 'b'}"))
-
-
 def weaknesses(seed, judge):
     asked = []
 
-    def ask(_purpose, item):
-        asked.append(item)
-        return answered(item, judge(item))
+    def ask(items):
+        asked.extend(items)
+        return [judge(each) for each in items]
 
     search = ItemSearch(InventedSpace(), CONTRASTS, seed)
     search.run(ask, 100)
@@ -161,20 +160,35 @@ def place(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_an_interrupted_search_continues_to_the_same_report(place):
+def searched(folder, **options):
     models = {"model": "weak.py:Weak", "transfer": "first-option"}
+    return search_items(InventedSpace(), folder, budget=60, **models, **options).plain()
 
-    def report():
-        return search_items(InventedSpace(), place / "out", budget=60, **models).plain()
 
-    first = report()
+def cells_in(folder):
+    return {each.name: each.read_bytes() for each in (folder / "cells").iterdir()}
+
+
+def test_an_interrupted_search_continues_to_the_same_report(place):
+    first = searched(place / "out")
     assert [each["factor"] for each in first["tested"] if each["weakness"]] == ["moves"]
     assert not any(each["weakness"] for each in first["transfer"]["first-option"])
-    file = place / "out" / "rows.jsonl"
-    rows = file.read_text(encoding="utf-8")
-    file.write_text("".join(rows.splitlines(keepends=True)[:20]), encoding="utf-8")
-    assert report() == first
-    assert file.read_text(encoding="utf-8") == rows
+    cells = cells_in(place / "out")
+    for name in sorted(cells)[20:]:
+        (place / "out" / "cells" / name).unlink()
+    assert searched(place / "out") == first
+    assert cells_in(place / "out") == cells
+    with pytest.raises(InputError, match="holds no search with this seed; name another"):
+        searched(place / "out", seed=1)
+
+
+@pytest.mark.long
+def test_questions_asked_in_parallel_give_the_same_search(place):
+    """By day, the interrupted search holds that no order of answers changes anything."""
+    assert searched(place / "several", jobs=2) == searched(place / "one")
+    assert cells_in(place / "several") == cells_in(place / "one")
+    plans = [(place / each / "study.json").read_bytes() for each in ("several", "one")]
+    assert plans[0] == plans[1]
 
 
 def test_twins_tell_the_same_story_but_for_one_factor(place):
@@ -200,21 +214,14 @@ def test_twins_tell_the_same_story_but_for_one_factor(place):
     [
         (["--budget", "0"], "budget is 0; give at least 40"),
         (["--model", "nobody"], "no model 'nobody'"),
-        (["--budget", "40", "-o", "study.yaml"], "study.yaml is a file"),
-        (["--budget", "40", "-o", "."], "is not empty and holds no search"),
+        (["--budget", "40", "-o", "study.yaml"], "study.yaml cannot be written: File exists"),
+        (["--budget", "40", "-o", "."], "is not empty and holds no study"),
     ],
 )
 def test_wrong_input_is_refused(place, capsys, options, fault):
     assert run_command_line(["search-items", "study.yaml", "-o", "out", *options]) == 2
     assert fault in capsys.readouterr().err
     assert not (place / "out").exists()
-
-
-def test_a_folder_of_another_search_is_refused(place, capsys):
-    (place / "out").mkdir()
-    (place / "out" / "search.json").write_text(json.dumps({"format": "beliefnest search 1"}))
-    assert run_command_line(["search-items", "study.yaml", "-o", "out"]) == 2
-    assert "another study, model and seed" in capsys.readouterr().err
 
 
 def test_a_study_in_which_nothing_varies_is_refused(place, capsys):

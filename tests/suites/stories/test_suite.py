@@ -10,8 +10,8 @@ from tests.suites.stories.texts import COMING_BACK, SHARED_SECRET
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.cli.playing import status_of
+from beliefnest.studies.suite_playing import play_suite
 from beliefnest.suites.films.cells import FILM_KIND
-from beliefnest.suites.playing import play_suite
 from beliefnest.suites.stories.cells import STORY_KIND, story_cells
 from beliefnest.suites.stories.data import read_items
 from beliefnest.suites.stories.suite import (

@@ -19,7 +19,7 @@ from beliefnest.scenarios.prose_check import check_prose
 from beliefnest.scenarios.questioning import shuffled
 from beliefnest.studies.checking import StudyKeyError
 from beliefnest.studies.items.balance import balanced_names
-from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
+from beliefnest.studies.items.record import DroppedQuestion, ItemRecord, item_id
 from beliefnest.studies.items.shortcuts import shortcuts
 from beliefnest.studies.participants.items import Item, ItemQuestion, item_name, items_of
 from beliefnest.studies.participants.playing import STORY, OnItem, played_items
@@ -79,7 +79,7 @@ def played_otherwise(
     compared, lines = 0, []
     for item, nest, _ in played_items(chosen, on_item, "embedded"):
         for question in item.questions:
-            record = items_by_id.get(_id(item, question))
+            record = items_by_id.get(item_id(item.name, question.id))
             if record is None:
                 continue
             compared += 1
@@ -141,7 +141,7 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
     chain = parse_path(path, nest.agents)
     text, options = nest[probe.path].render(STORY), shuffled(asked, key.seed)
     return ItemRecord(
-        id=_id(item, question),
+        id=item_id(item.name, question.id),
         text=text,
         question=place,
         options=options,
@@ -164,10 +164,6 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
         checked=verdict,
         shortcuts=shortcuts(nest, asked, naming, options, text),
     )
-
-
-def _id(item: Item, question: ItemQuestion) -> str:
-    return digest([item.name, question.id])[:16]
 
 
 def _factors(values: Mapping[str, Any]) -> dict[str, str]:

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 
 import msgspec
 
+from beliefnest.plan.cells import digest
+
 
 class ItemRecord(msgspec.Struct, frozen=True, kw_only=True):
     """Question about a story, with all that made it.
@@ -63,6 +65,16 @@ class ItemRecord(msgspec.Struct, frozen=True, kw_only=True):
     skeleton: str
     checked: str
     shortcuts: Mapping[str, str | None]
+
+
+def item_id(scene: str, question: str) -> str:
+    """Return the id of an item.
+
+    Args:
+        scene: Name of the scene, as `item_name` gives it and files of participants have it.
+        question: Numbers of the probe and of the question in it, such as `1.2`.
+    """
+    return digest([scene, question])[:16]
 
 
 class DroppedQuestion(msgspec.Struct, frozen=True, kw_only=True):

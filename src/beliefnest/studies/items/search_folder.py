@@ -1,26 +1,23 @@
-"""Folder of a search for hard items: its answers, by which it continues, and its report."""
+"""Search for hard items in a folder: each question is a cell of a plan that grows."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.files import replace_file
 from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.messages import Usage
-from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.llm.resolve import check_model
-from beliefnest.locking import holding
 from beliefnest.plan.cells import digest
-from beliefnest.plan.spending import append_line, spent_in
-from beliefnest.plan.terms import Terms
-from beliefnest.scenarios.record_forms import read_json, read_lines
+from beliefnest.plan.jobs import OnStudyProgress
+from beliefnest.plan.spending import spent_in
 from beliefnest.studies.checking import is_whole
-from beliefnest.studies.items.asking import ItemAnswer, ask_item
+from beliefnest.studies.items.cells import ITEM_KIND, ItemCell, item_cells
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.searching import (
     LEAST_BUDGET,
@@ -31,15 +28,13 @@ from beliefnest.studies.items.searching import (
     judged_pairs,
 )
 from beliefnest.studies.items.space import ItemSpace
+from beliefnest.studies.study_folder import StudyFolder
+from beliefnest.studies.suite_playing import PlayCells, cells_player
 from beliefnest.world.words import listed
 
-_FORM = "beliefnest search 1"
+_SUITE = "search"
 _FIRST = 20
 """Greatest number of draws for a valid scene of a scenario."""
-_NEW = "name another folder with --out"
-
-OnAnswer = Callable[[str, int, int], None]
-"""Function of a description with the cost, the number of answers, and the greatest number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,28 +45,26 @@ class SearchReport:
         model: Name of the model.
         asked: Number of questions that the model was asked in search and test.
         contrasts: Number of contrasts in the space.
-        tested: Contrasts that were tested on fresh pairs.
-        transfer: The same for a second model; empty: there is none.
+        tests: Contrasts that were tested on fresh pairs, by model: this one, and the second one if
+            there is any.
         usage: Tokens and known cost of all answers.
     """
 
     model: str
     asked: int
     contrasts: int
-    tested: Sequence[JudgedContrast]
-    transfer: Mapping[str, Sequence[JudgedContrast]]
+    tests: Mapping[str, Sequence[JudgedContrast]]
     usage: Usage
 
     def plain(self) -> dict[str, Any]:
         """Return the values by name."""
+        tests = {name: [each.plain() for each in own] for name, own in self.tests.items()}
         return {
             "model": self.model,
             "asked": self.asked,
             "contrasts": self.contrasts,
-            "tested": [each.plain() for each in self.tested],
-            "transfer": {
-                name: [each.plain() for each in own] for name, own in self.transfer.items()
-            },
+            "tested": tests.pop(self.model),
+            "transfer": tests,
             "tokens": self.usage.tokens,
             "cost": self.usage.cost,
         }
@@ -86,12 +79,14 @@ def search_items(
     seed: int = 0,
     transfer: str | None = None,
     max_cost: float | None = None,
-    on_answer: OnAnswer = lambda what, done, total: None,
+    jobs: int = 1,
+    on_progress: OnStudyProgress = lambda progress: None,
 ) -> SearchReport:
     """Search for factors that make items hard for a model, and test them on fresh items.
 
     Half of the questions search; the others test. A search that was interrupted continues: each
-    question that the folder has an answer to is not asked again.
+    question that the folder has an answer to is not asked again. The result depends on no number of
+    jobs.
 
     Args:
         space: The items.
@@ -101,7 +96,8 @@ def search_items(
         seed: Seed of all draws.
         transfer: Name of a second model that is asked the fresh items; None: no such model.
         max_cost: Cost limit of the folder in US dollars; None: that of the study.
-        on_answer: Function that receives the progress.
+        jobs: Number of questions to ask in parallel.
+        on_progress: Function that receives the progress; its total grows.
 
     Raises:
         InputError: A number is wrong, or the folder holds something else.
@@ -115,30 +111,30 @@ def search_items(
             "the others test what was found on fresh items"
         )
     limits = RunLimits(None, space.design.limits.cost if max_cost is None else max_cost)
-    ledger = folder / "spent.jsonl"
-    terms = Terms((folder / "answers").absolute(), ledger.absolute(), None, limits)
-    for name in filter(None, (model, transfer)):
+    models = [model] if transfer is None else [model, transfer]
+    terms = StudyFolder(folder, ITEM_KIND).terms(limits)
+    for name in models:
         check_model(name, terms.surroundings, terms.connection())
-    _check_folder(folder, space, model, seed)
-    with holding(folder):
-        keeper = _Keeper(folder, terms, on_answer)
-        orders = {
-            each.order
-            for family in space.families
-            for each in _first_questions(space, family, seed)
-        }
-        search = ItemSearch(space, space.contrasts(orders), seed)
-        half = budget // 2
-        search.run(keeper.asking(model, budget), half)
+    place = StudyFolder.open(folder, ITEM_KIND)
+    texts = [each.text for each in space.documents.values()]
+    own_search = {"study": digest([space.design.plain(), texts]), "model": model, "seed": seed}
+    _check_same(place, own_search)
+    about = {"suites": [_SUITE], "models": models, "search": own_search}
+    orders = {
+        each.order for family in space.families for each in _first_questions(space, family, seed)
+    }
+    search = ItemSearch(space, space.contrasts(orders), seed)
+    half = budget // 2
+    with cells_player(place, about, models, on_progress, limits, jobs) as play:
+        asker = _Asker(place, play)
+        search.run(asker.asking(model), half)
         pairs = list(search.fresh(budget - half))
         _write_pairs(folder / "finds.jsonl", search.finds)
         _write_pairs(folder / "fresh.jsonl", pairs)
-        own = judged_pairs(pairs, keeper.asking(model, budget))
-        asked = keeper.asked
-        others = {}
-        if transfer is not None:
-            others[transfer] = judged_pairs(pairs, keeper.asking(transfer, asked + 2 * len(pairs)))
-        report = SearchReport(model, asked, len(search.contrasts), own, others, spent_in(ledger))
+        tested = {name: judged_pairs(pairs, asker.asking(name)) for name in models}
+        asked = sum(each.key.setting["model"] == model for each in asker.cells.values())
+        usage = spent_in(place.ledger)
+        report = SearchReport(model, asked, len(search.contrasts), tested, usage)
         replace_file(folder / "report.json", json.dumps(report.plain(), indent=2) + "\n")
     return report
 
@@ -154,57 +150,48 @@ def _first_questions(space: ItemSpace, family: str, seed: int) -> Sequence[ItemR
 
 
 @dataclass
-class _Keeper:
-    """Answers of a folder, which asks a model only for those that are not there yet."""
+class _Asker:
+    """Asker of items, whose cells are one plan that grows with what is asked.
 
-    folder: Path
-    terms: Terms
-    on_answer: OnAnswer
-    asked: int = 0
+    Attributes:
+        place: Folder of the search.
+        play: Function that plays the cells without a result.
+        cells: All cells that were asked for, by name.
+    """
 
-    def __post_init__(self) -> None:
-        self._file = self.folder / "rows.jsonl"
-        self._answers = {(each.model, each.id): each for each in read_lines(self._file, ItemAnswer)}
+    place: StudyFolder
+    play: PlayCells
+    cells: dict[str, ItemCell] = field(default_factory=dict)
 
-    def asking(self, name: str, total: int) -> Ask:
+    def asking(self, model: str) -> Ask:
         """Return the function that asks a model."""
-        model = self.terms.model(name, ModelSettings())
 
-        def ask(purpose: str, item: ItemRecord) -> ItemAnswer:
-            answer = self._answers.get((name, item.id))
-            if answer is None:
-                answer = ask_item(model, item)
-                self._answers[name, item.id] = answer
-                append_line(self._file, msgspec.json.encode(answer).decode())
-            self.asked += 1
-            cost = spent_in(self.terms.ledger).cost or 0.0
-            self.on_answer(f"{purpose}, {cost:.2f} US dollars", self.asked, total)
-            return answer
+        def ask(items: Sequence[ItemRecord]) -> list[bool]:
+            asked = item_cells(_SUITE, items, [model])
+            self.cells |= {each.key.name: each for each in asked}
+            self.play(list(self.cells.values()))
+            return [self._is_right(each) for each in asked]
 
         return ask
 
+    def _is_right(self, cell: ItemCell) -> bool:
+        content = self.place.cell(cell.key.name) or {"error": "it was not asked"}
+        if content["error"] is not None:
+            raise ModelError(
+                f"{content['error']}; run the same command again to continue in {self.place.path}"
+            )
+        return bool(content["rows"][0]["ok"])
 
-def _check_folder(folder: Path, space: ItemSpace, model: str, seed: int) -> None:
-    """Make a folder of a search; raise InputError if it holds another one, or something else."""
-    described = {
-        "format": _FORM,
-        "study": digest([space.design.plain(), [each.text for each in space.documents.values()]]),
-        "model": model,
-        "seed": seed,
-    }
-    file = folder / "search.json"
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder} is a file; {_NEW}")
-    if not file.is_file():
-        if folder.is_dir() and any(folder.iterdir()):
-            raise InputError(f"{folder} is not empty and holds no search; {_NEW}")
-        folder.mkdir(parents=True, exist_ok=True)
-        replace_file(file, json.dumps(described, indent=2) + "\n")
-        return
-    there = read_json(file, _NEW)
-    differing = [name for name, value in described.items() if there.get(name) != value]
+
+def _check_same(place: StudyFolder, search: Mapping[str, Any]) -> None:
+    """Raise InputError if a folder holds another search, or none."""
+    there = place.plan().get("search", {}) if place.has_plan else search
+    differing = [name for name, value in search.items() if there.get(name) != value]
     if differing:
-        raise InputError(f"{folder} holds a search with another {listed(differing)}; {_NEW}")
+        raise InputError(
+            f"{place.path} holds no search with this {listed(differing)}; name another folder with "
+            "--out"
+        )
 
 
 def _write_pairs(file: Path, pairs: Sequence[ItemPair]) -> None:

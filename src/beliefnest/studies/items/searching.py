@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.studies.counting import Pairs
-from beliefnest.studies.items.asking import ItemAnswer
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.space import CONDITION, ORDER, Contrast, ItemSpace, Questions
 
@@ -21,10 +20,12 @@ _HOPELESS = 20
 """Number of right answers at a hard level, without any find, after which it is given up."""
 _TRIES = 20
 """Number of draws in a row without a new pair, after which there seems to be none."""
+_TOGETHER = 8
+"""Greatest number of pairs that are asked before the search learns from their answers."""
 _ALPHA = 0.05
 
-Ask = Callable[[str, ItemRecord], ItemAnswer]
-"""Function that asks a model an item; the text says what for, to people."""
+Ask = Callable[[Sequence[ItemRecord]], Sequence[bool]]
+"""Function that asks a model items, and returns True for each right answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,9 +85,9 @@ class JudgedContrast:
 class ItemSearch:
     """Search in a space of items, always the same for the same answers and seed.
 
-    Each step chooses a contrast by Thompson sampling of the share of its hard items that fail
-    while their twins do not. The levels of all other factors are drawn by how often items with
-    them were right, so that one weakness does not hide another.
+    Each step chooses contrasts by Thompson sampling of the share of their hard items that fail
+    while their twins do not, and asks them together. The levels of all other factors are drawn by
+    how often items with them were right, so that one weakness does not hide another.
 
     Attributes:
         space: The items.
@@ -113,38 +114,62 @@ class ItemSearch:
         """
         chance, left = random.Random(f"search {self.seed}"), budget
         barren: set[Contrast] = set()
-        while left >= 2 and (contrast := self._next(chance, barren)):
+        while pairs := self._chosen(chance, barren, min(_TOGETHER, left // 2)):
+            failed: list[ItemPair] = []
+            for pair, right in self._asked(ask, [(each, each.hard) for each in pairs]):
+                self.passed[pair.contrast] += right
+                failed += [] if right else [pair]
+            # If both fail, another weakness hides this one: the pair says nothing.
+            twins = self._asked(ask, [(each, each.easy) for each in failed])
+            self.finds += [pair for pair, right in twins if right]
+            left -= len(pairs) + len(failed)
+
+    def _chosen(self, chance: random.Random, barren: set[Contrast], most: int) -> list[ItemPair]:
+        """Return the next pairs to ask; empty: no contrast is left, or no question."""
+        pairs: list[ItemPair] = []
+        while len(pairs) < most:
+            chosen = Counter(each.contrast for each in pairs)
+            contrast = self._next(chance, barren, chosen)
+            if contrast is None:
+                break
             pair = next(self._pairs(contrast, chance, f"search {self.seed}", self.asked), None)
             if pair is None:
                 barren.add(contrast)
-                continue
-            left -= 1
-            if self._right(ask, pair.hard):
-                self.passed[contrast] += 1
-                continue
-            left -= 1
-            # If both fail, another weakness hides this one: the pair says nothing.
-            if self._right(ask, pair.easy):
-                self.finds.append(pair)
+            else:
+                pairs.append(pair)
+        return pairs
 
-    def _right(self, ask: Ask, item: ItemRecord) -> bool:
-        self.asked.add((item.text, item.question))
-        right = ask("searching", item).ok
-        levels = {**item.factors, CONDITION: str(item.condition), ORDER: str(item.order)}
-        for name, level in levels.items():
-            self._answers[name, level].append(right)
-        return right
+    def _asked(
+        self, ask: Ask, items: Sequence[tuple[ItemPair, ItemRecord]]
+    ) -> list[tuple[ItemPair, bool]]:
+        """Ask an item of each pair; return the pairs, with True for each right answer."""
+        verdicts = ask([item for _, item in items]) if items else ()
+        for (_, item), right in zip(items, verdicts, strict=True):
+            self.asked.add((item.text, item.question))
+            levels = {**item.factors, CONDITION: str(item.condition), ORDER: str(item.order)}
+            for name, level in levels.items():
+                self._answers[name, level].append(right)
+        return [(pair, right) for (pair, _), right in zip(items, verdicts, strict=True)]
 
     def _found(self, contrast: Contrast) -> int:
         return sum(each.contrast == contrast for each in self.finds)
 
-    def _next(self, chance: random.Random, barren: set[Contrast]) -> Contrast | None:
-        """Choose the most promising contrast by a draw; None: none is left to search."""
+    def _next(
+        self, chance: random.Random, barren: set[Contrast], chosen: Counter[Contrast]
+    ) -> Contrast | None:
+        """Choose the most promising contrast by a draw; None: none is left to search.
+
+        Args:
+            chance: Source of the draw.
+            barren: Contrasts without further pairs.
+            chosen: Number of pairs of each contrast that wait to be asked.
+        """
         draws = {}
         for each in self.contrasts:
             finds, passed = self._found(each), self.passed[each]
             draw = chance.betavariate(1 + finds, 1 + passed)
-            if each not in barren and finds < _ENOUGH and (finds or passed < _HOPELESS):
+            is_open = finds + chosen[each] < _ENOUGH and (finds or passed < _HOPELESS)
+            if each not in barren and is_open:
                 draws[each] = draw
         return max(draws, key=lambda each: draws[each], default=None)
 
@@ -250,10 +275,9 @@ def judged_pairs(pairs: Sequence[ItemPair], ask: Ask) -> list[JudgedContrast]:
         ModelError: The model cannot be asked.
     """
     answers: dict[Contrast, list[tuple[bool, bool]]] = defaultdict(list)
-    for each in pairs:
-        purpose = f"testing {each.contrast.text}"
-        both = ask(purpose, each.hard).ok, ask(purpose, each.easy).ok
-        answers[each.contrast].append(both)
+    verdicts = ask([item for each in pairs for item in (each.hard, each.easy)])
+    for each, hard, easy in zip(pairs, verdicts[::2], verdicts[1::2], strict=True):
+        answers[each.contrast].append((hard, easy))
     # Pairs are independent draws from the region, so that each is a cluster of its own.
     compared = [
         (contrast, Pairs(contrast.hard, " or ".join(contrast.others), tuple((n,) for n in own)))

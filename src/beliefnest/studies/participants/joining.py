@@ -74,29 +74,24 @@ _Sessions = dict[str, dict[str, dict[str, PersonAnswer]]]
 """Answers by participant, item and question."""
 
 
-def counted_answers(
-    answers: Iterable[PersonAnswer], items: Mapping[str, Item], notes: list[str]
-) -> _Sessions:
+def counted_answers(answers: Sequence[PersonAnswer], notes: list[str]) -> _Sessions:
     """Return the answers that count, by participant, item and question.
 
     Of a participant with several sessions, the first one counts. Equal answers that several files
     hold count once.
 
     Args:
-        answers: Answers of all files.
-        items: Items of the study, by name.
+        answers: Answers of all files, with the texts of their own options.
         notes: List that receives a sentence about what was left out.
 
     Raises:
-        InputError: An answer belongs to no question of the study, is none of the options, or two
-            files contradict each other.
+        InputError: Two files contradict each other.
     """
-    own = [_checked(answer, items) for answer in answers]
     firsts: dict[str, str] = {}
-    for answer in own:
+    for answer in answers:
         before = firsts.setdefault(answer.participant, answer.started)
         firsts[answer.participant] = min(before, answer.started)
-    later = {each.participant for each in own if each.started != firsts[each.participant]}
+    later = {each.participant for each in answers if each.started != firsts[each.participant]}
     for participant in sorted(later):
         notes.append(
             f"participant {participant} took part more than once; only the session that began "
@@ -104,7 +99,7 @@ def counted_answers(
         )
     sessions: _Sessions = {}
     twice = 0
-    for answer in own:
+    for answer in answers:
         if answer.started != firsts[answer.participant]:
             continue
         sheet = sessions.setdefault(answer.participant, {}).setdefault(answer.cell, {})
@@ -121,8 +116,16 @@ def counted_answers(
     return sessions
 
 
-def _checked(answer: PersonAnswer, items: Mapping[str, Item]) -> PersonAnswer:
-    """Return an answer with the study's own texts of its options."""
+def checked_answer(answer: PersonAnswer, items: Mapping[str, Item]) -> PersonAnswer:
+    """Return an answer with the study's own texts of its options.
+
+    Args:
+        answer: The answer, as it is in its file.
+        items: Items of the study, by name.
+
+    Raises:
+        InputError: It belongs to no question of the study, or is none of the options.
+    """
     item = items.get(answer.cell)
     if item is None:
         raise answer.fault(
@@ -134,17 +137,26 @@ def _checked(answer: PersonAnswer, items: Mapping[str, Item]) -> PersonAnswer:
     asked = next((each.asked for each in item.questions if each.id == answer.question), None)
     if asked is None:
         raise answer.fault("question", f"the cell {answer.cell} has no question {answer.question}")
-    if not asked.options:
+    return with_own_options(answer, asked.options)
+
+
+def with_own_options(answer: PersonAnswer, options: Sequence[str]) -> PersonAnswer:
+    """Return an answer with the question's own texts of its options; empty: it has none.
+
+    Raises:
+        InputError: The answer is none of them, or it was given to others.
+    """
+    if not options:
         return answer
-    texts = {visible(option): option for option in asked.options}
+    texts = {visible(option): option for option in options}
     if answer.response and answer.response not in texts:
         raise answer.fault(
             "response",
-            f"{quoted(answer.response)} is none of the options {', '.join(asked.options)}",
+            f"{quoted(answer.response)} is none of the options {', '.join(options)}",
         )
     if answer.options and set(answer.options) != set(texts):
-        raise answer.fault("options", f"must be {', '.join(asked.options)} in some order")
-    order = tuple(texts[option] for option in answer.options) or asked.options
+        raise answer.fault("options", f"must be {', '.join(options)} in some order")
+    order = tuple(texts[option] for option in answer.options) or tuple(options)
     return replace(answer, response=texts.get(answer.response, ""), options=order)
 
 

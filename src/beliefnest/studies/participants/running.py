@@ -27,7 +27,13 @@ from beliefnest.studies.participants.folder import (
 )
 from beliefnest.studies.participants.instructions import instruction_pages, read_instructions
 from beliefnest.studies.participants.items import items_of, left_out
-from beliefnest.studies.participants.joining import Joined, check_name, counted_answers, joined
+from beliefnest.studies.participants.joining import (
+    Joined,
+    check_name,
+    checked_answer,
+    counted_answers,
+    joined,
+)
 from beliefnest.studies.participants.playing import OnItem, judged_items, refuse_claims, shown_items
 from beliefnest.studies.plainframe import Typed, write_csv
 
@@ -145,8 +151,9 @@ def join_answers(
     ]
     reasons = dict(Counter(excluded.values()))
     notes = [f"excluded: {excluded_words(reasons)}"] if reasons else []
-    real_answers = [each for each in answers if not each.is_start]
-    sessions = counted_answers(real_answers, {item.name: item for item in items}, notes)
+    by_name = {item.name: item for item in items}
+    real_answers = [checked_answer(each, by_name) for each in answers if not each.is_start]
+    sessions = counted_answers(real_answers, notes)
     answered = {cell for own in sessions.values() for cell in own}
     wanted = [item for item in items if item.name in answered]
     pages = {each.study for each in answers if each.study}

@@ -8,9 +8,9 @@ import msgspec
 
 from beliefnest.plan.cells import digest
 from beliefnest.plan.terms import PlayStage
+from beliefnest.studies.suite_cells import SuiteKey, suite_kind
 from beliefnest.suites.films.film import WHOLE, Film, FilmParameters, FilmRow
 from beliefnest.suites.films.film_inference import LESIONS, Lesion, judge
-from beliefnest.suites.playing import SuiteKey, suite_kind
 
 FILM_KIND = suite_kind(
     "films", FilmRow, ("variant", "about"), is_judged=False, means=("model", "people")

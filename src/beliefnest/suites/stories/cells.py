@@ -11,7 +11,7 @@ from beliefnest.llm.messages import Sampling
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.plan.cells import digest
 from beliefnest.plan.terms import PlayStage
-from beliefnest.suites.playing import SuiteKey, suite_kind
+from beliefnest.studies.suite_cells import SuiteKey, suite_kind
 from beliefnest.suites.stories.data import StoryItems
 from beliefnest.suites.stories.suite import JudgedAnswer, answer_story, asked_in
 

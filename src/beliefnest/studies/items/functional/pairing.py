@@ -6,8 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.errors import ModelError
+import msgspec
+
+from beliefnest.errors import InputError, ModelError
 from beliefnest.plan.jobs import OnStudyProgress
+from beliefnest.scenarios.record_forms import checked_form, read_json
 from beliefnest.studies.accuracy_figure import plot_accuracy
 from beliefnest.studies.clusters import exchange_p, rate_interval
 from beliefnest.studies.items.functional.certifying import Certificate
@@ -16,6 +19,9 @@ from beliefnest.studies.study import Study
 
 if TYPE_CHECKING:  # matplotlib is optional, and imported when something is plotted.
     from matplotlib.figure import Figure
+
+FUNCTIONAL = "functional.json"
+"""Name of the file of certificates and pairs."""
 
 Outcomes = Mapping[int, Sequence[bool]]
 """Right or wrong by instance, for each repeat."""
@@ -157,6 +163,51 @@ def _together(order: int, pairs: Sequence[LiteralFunctionalPair]) -> LiteralFunc
     literal = dict(enumerate(v for each in pairs for v in each.literal.values()))
     functional = dict(enumerate(v for each in pairs for v in each.functional.values()))
     return LiteralFunctionalPair("", order, literal, functional)
+
+
+class _Rate(msgspec.Struct):
+    rate: float
+
+
+class OrderGap(msgspec.Struct):
+    """Row of `functional.json`: rates of a model on the same instances.
+
+    Attributes:
+        family: Name of the family; empty: all families of the order.
+        order: Order that the family needs.
+        literal: Rate of right answers to questions.
+        functional: Rate of episodes won.
+        difference: Literal minus functional.
+        p: Probability of at least this difference by chance.
+    """
+
+    family: str
+    order: int
+    literal: _Rate
+    functional: _Rate
+    difference: float
+    p: float
+
+
+class _FunctionalForm(msgspec.Struct):
+    model: str
+    pairs: list[OrderGap]
+
+
+def read_gaps(folder: Path) -> tuple[str, dict[int, OrderGap]]:
+    """Return the model of a folder of functional items, and its gap at each order.
+
+    Raises:
+        InputError: The folder holds none, or no model was asked.
+    """
+    again = "write it with `beliefnest items STUDY -o DIR --functional --model M`"
+    file = folder / FUNCTIONAL
+    if not file.is_file():
+        raise InputError(f"there is no {file}; {again}")
+    content = read_json(file, again)
+    checked_form(content, _FunctionalForm, file, again)
+    results = msgspec.convert(content, _FunctionalForm)
+    return results.model, {each.order: each for each in results.pairs if not each.family}
 
 
 def plot_pairs(

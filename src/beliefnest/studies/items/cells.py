@@ -11,7 +11,7 @@ from beliefnest.plan.cells import digest
 from beliefnest.plan.terms import PlayStage
 from beliefnest.studies.items.asking import ItemAnswer, ask_item
 from beliefnest.studies.items.record import ItemRecord
-from beliefnest.suites.playing import SuiteKey, suite_kind
+from beliefnest.studies.suite_cells import SuiteKey, suite_kind
 
 
 class AnsweredItem(ItemAnswer, frozen=True, kw_only=True):
@@ -55,21 +55,8 @@ class ItemCell:
 
     def plain(self) -> dict[str, Any]:
         """Return the cell as plain values for the plan."""
-        return self.key.planned(self.item.skeleton, [self._asked])
-
-    @property
-    def _asked(self) -> dict[str, Any]:
-        item = self.item
-        return {
-            "id": item.id,
-            "model": self.key.setting["model"],
-            "family": item.family,
-            "order": item.order,
-            "kind": item.kind,
-            "chance": item.chance,
-            "question": item.question,
-            "expected": item.right,
-        }
+        asked = said_of(self.item, self.key.setting["model"])
+        return self.key.planned(self.item.skeleton, [asked])
 
     def play(self, stage: PlayStage) -> dict[str, Any]:
         """Ask the model, and return its answer as plain values.
@@ -78,9 +65,27 @@ class ItemCell:
             ModelError: The model cannot be asked.
         """
         model = stage.terms.model(self.key.setting["model"], ModelSettings())
-        answer = msgspec.to_builtins(ask_item(model, self.item))
-        row = AnsweredItem(**{**answer, **self._asked})
-        return {"error": None, "rows": [msgspec.to_builtins(row)]}
+        return played_item(self.item, ask_item(model, self.item), self.key.setting["model"])
+
+
+def said_of(item: ItemRecord, model: str) -> dict[str, Any]:
+    """Return what a row says of its item and of the model, by column."""
+    return {
+        "id": item.id,
+        "model": model,
+        "family": item.family,
+        "order": item.order,
+        "kind": item.kind,
+        "chance": item.chance,
+        "question": item.question,
+        "expected": item.right,
+    }
+
+
+def played_item(item: ItemRecord, answer: ItemAnswer, model: str) -> dict[str, Any]:
+    """Return the result of the cell of an answer, as plain values."""
+    row = AnsweredItem(**{**msgspec.to_builtins(answer), **said_of(item, model)})
+    return {"error": None, "rows": [msgspec.to_builtins(row)]}
 
 
 def item_cells(suite: str, items: Iterable[ItemRecord], models: Sequence[str]) -> list[ItemCell]:
@@ -91,7 +96,7 @@ def item_cells(suite: str, items: Iterable[ItemRecord], models: Sequence[str]) -
         items: The items.
         models: Names of the models.
     """
-    asked = [(each, _content(each)) for each in items if each.options]
+    asked = [(each, content_of(each)) for each in items if each.options]
     return [
         ItemCell(SuiteKey(suite, content, {"model": model, "seed": item.seed}), item)
         for model in models
@@ -99,6 +104,6 @@ def item_cells(suite: str, items: Iterable[ItemRecord], models: Sequence[str]) -
     ]
 
 
-def _content(item: ItemRecord) -> str:
-    """Return a hash of what a model is asked and judged by."""
+def content_of(item: ItemRecord) -> str:
+    """Return a hash of what somebody is asked and judged by."""
     return digest([item.id, item.text, item.question, item.options, item.right])[:16]

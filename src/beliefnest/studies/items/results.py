@@ -11,11 +11,12 @@ from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.messages import Answer, Finish
 from beliefnest.scenarios.record_forms import read_lines
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.items.asking import judged_answer
+from beliefnest.studies.items.cells import AnsweredItem
 from beliefnest.studies.items.exports import sha256
 from beliefnest.studies.items.item_set import read_description
 from beliefnest.studies.items.record import ItemRecord
-from beliefnest.suites.items.cells import AnsweredItem
 from beliefnest.world.texts import quoted
 
 
@@ -84,8 +85,9 @@ class PublishedSet:
 
 
 def results_of(items: PublishedSet, rows: Iterable[Mapping[str, Any]]) -> bytes:
-    """Return the file of results of the rows that a set gave, without those of failed cells."""
-    played = (row for row in rows if row["finish"] is not None)
+    """Return the file of results of models, without those of failed cells."""
+    of_models = (row for row in rows if row.get(PARTICIPANT) is None)
+    played = (row for row in of_models if row["finish"] is not None)
     answers = (msgspec.convert(row, AnsweredItem) for row in played)
     of_set = {"set": items.name, "version": items.version, "digest": items.digest}
     kept = ("id", "model", "answered", "ok", "outcome", "finish", "text")

@@ -3,12 +3,13 @@
 import json
 
 import pytest
+from tests.studies.items.building import invented
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.llm.messages import Answer
 from beliefnest.studies.items.asking import judged_answer, prompt_of
 from beliefnest.studies.items.item_set import ItemSet
-from beliefnest.studies.items.record import ItemRecord
+from beliefnest.studies.items.record import ItemRecord, item_id
 
 MODEL = """
 from beliefnest.llm.messages import Answer
@@ -25,30 +26,8 @@ class Careful:
 
 
 def item(number: int, text: str, right: str = "box", order: int = 1) -> ItemRecord:
-    return ItemRecord(
-        id=f"i{number}",
-        text=text,
-        question="Where is it?",
-        options=("bag", "box"),
-        right=right,
-        kind="item",
-        order=order,
-        path="/x",
-        told_by="/",
-        chain=("x",),
-        chance=0.5,
-        family="f",
-        scenario="s",
-        condition=None,
-        variation="v",
-        factors={},
-        probe="p",
-        seed=number,
-        tick=0,
-        skeleton=str(number),
-        checked="follows",
-        shortcuts={},
-    )
+    own = {"text": text, "right": right, "order": order, "seed": number, "skeleton": str(number)}
+    return invented(id=item_id(f"scene {number}", "1.1"), **own)
 
 
 ITEMS = (
@@ -123,7 +102,7 @@ def test_results_are_checked_against_their_set(answered, capsys):
         "digest is '0'",
         "version is '2'",
     ]
-    words = [*["is no result"] * 3, *words, "has a result of i0 before"]
+    words = [*["is no result"] * 3, *words, f"has a result of {ITEMS[0].id} before"]
     numbers = [8, 9, 10, 1, 2, 3, 4, 5, 7]
     for fault, number, word in zip(report["faults"], numbers, words, strict=True):
         assert f":{number}: " in fault and word in fault
@@ -139,7 +118,7 @@ def test_results_are_checked_against_their_set(answered, capsys):
         (["--models", "nobody", "-o", "OUT"], "no model 'nobody'"),
         (["--models", "first-option,", "-o", "OUT"], "each model once"),
         (["--verify-results", "nowhere.jsonl"], "no file of results"),
-        (["--verify-results", "nowhere.jsonl", "-o", "OUT"], "alone"),
+        (["--verify-results", "nowhere.jsonl", "-o", "OUT"], "--out belongs to `beliefnest items"),
         (["-o", "OUT"], "add --models"),
     ],
 )
@@ -148,6 +127,83 @@ def test_wrong_input_is_refused(options, words, tmp_path, capsys):
     own = [each.replace("OUT", str(tmp_path / "out")) for each in options]
     assert run_command_line(["items", str(tmp_path / "set"), *own]) == 2
     assert words in capsys.readouterr().err
+
+
+def answer(participant, number, response, **values):
+    """Return a row of the page for participants."""
+    row = {"participant": participant, "cell": f"scene {number}", "question": "1.1"}
+    own = {"response": response, "options": ["box", "bag"], "started": f"2026-01-0{participant}"}
+    return {**row, **own, **values}
+
+
+def test_people_stand_beside_models(tmp_path, capsys):
+    """Two participants answer; one of them twice, and once to a question that is held out."""
+    ItemSet("own", ITEMS, ()).write(tmp_path / "set")
+    rows = [answer("7", each, "box") for each in (0, 1, 4)]
+    rows += [answer("5", 0, "bag"), answer("5", 0, "box", started="later"), answer("5", 9, "bag")]
+    (tmp_path / "answers.json").write_text(json.dumps(rows), encoding="utf-8")
+    out = tmp_path / "out"
+    command = ["items", str(tmp_path / "set"), "--models", "first-option", "-o", str(out)]
+    people = ["--people", str(tmp_path / "answers.json")]
+    for _ in range(2):
+        assert run_command_line([*command, *people, "--jobs", "1"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "not counted: 1 answer of people to no item of the set" in text
+    assert "participant p1 took part more than once" in text
+    assert run_command_line([*command, *people, "--jobs", "1", "--json"]) == 0
+    groups = json.loads(capsys.readouterr().out)["models"]
+    own = {each.get("order"): each for each in groups if each["model"] == "people"}
+    assert {n: (each["judged"], each["right"]) for n, each in own.items()} == {
+        None: (4, 2),
+        1: (3, 1),
+        2: (1, 1),
+    }
+    # Results are those of models; rows are those of all.
+    assert len((out / "results.jsonl").read_text().splitlines()) == len(ITEMS)
+    assert run_command_line(["stats", str(out), "--between", "model", "--json"]) == 0
+    (pair,) = json.loads(capsys.readouterr().out)["differences"]["model"]
+    assert (pair["pairs"], pair["only_other"], pair["only_one"]) == (4, 2, 1)
+    assert run_command_line([*command, "--jobs", "1", "--json"]) == 0
+    assert {each["model"] for each in json.loads(capsys.readouterr().out)["models"]} == {
+        "first-option"
+    }
+
+
+def test_the_gap_to_acting_stands_at_its_order(tmp_path, capsys):
+    ItemSet("own", ITEMS, ()).write(tmp_path / "set")
+    row = {"order": 1, "literal": {"rate": 0.9}, "functional": {"rate": 0.5}}
+    pairs = [{**row, "family": each, "difference": 0.4, "p": 0.01} for each in ("tell", "")]
+    content = json.dumps({"model": "first-option", "pairs": pairs})
+    (tmp_path / "functional.json").write_text(content, encoding="utf-8")
+    command = ["items", str(tmp_path / "set"), "-o", str(tmp_path / "out"), "--jobs", "1"]
+    command += ["--gap", str(tmp_path)]
+    assert run_command_line([*command, "--models", "first-option"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = (each for each in lines if "+40% (p 0.010)" in each)
+    assert line.split()[:2] == ["first-option", "1"] and "50%" in line
+    assert run_command_line([*command, "--models", "chance"]) == 2
+    assert "has episodes of 'first-option', and --models is chance" in capsys.readouterr().err
+    (tmp_path / "functional.json").write_text('{"certificates": []}', encoding="utf-8")
+    assert run_command_line([*command, "--models", "chance"]) == 2
+    assert "--functional --model M" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ([answer("7", 0, "barrel")], "'barrel' is none of the options bag, box"),
+        ([answer("7", 0, "box"), answer("7", 0, "bag")], "keep one of the two files"),
+        ([answer("7", 8, "box")], "has no answer to an item of own"),
+        ([{"participant": "7"}], "column cell: is empty"),
+    ],
+)
+def test_answers_of_people_that_do_not_fit_are_refused(rows, words, tmp_path, capsys):
+    ItemSet("own", ITEMS, ()).write(tmp_path / "set")
+    (tmp_path / "answers.json").write_text(json.dumps(rows), encoding="utf-8")
+    command = ["items", str(tmp_path / "set"), "--models", "chance", "-o", str(tmp_path / "out")]
+    assert run_command_line([*command, "--people", str(tmp_path / "answers.json")]) == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_model_that_fails_is_told(tmp_path, capsys):

@@ -1,26 +1,15 @@
-"""Playing of a suite: its cells, their table, and their folder, which is like that of a study."""
+"""Cells of suites, and their table."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass, field
 from types import NoneType
 from typing import Any, Generic, TypeVar, get_args
 
 import msgspec
 
-from beliefnest.errors import InputError
-from beliefnest.llm.budget import RunLimits
-from beliefnest.llm.resolve import open_model
-from beliefnest.locking import holding
-from beliefnest.nest.past.versions import own_versions
-from beliefnest.plan.cells import Key, Keyed, variation_id
-from beliefnest.plan.jobs import OnStudyProgress, run_cells
+from beliefnest.plan.cells import Key, variation_id
 from beliefnest.studies.forms import CellsPlan, PlannedCell
-from beliefnest.studies.kinds import CellKind
-from beliefnest.studies.result import StudyResult
-from beliefnest.studies.study_folder import StudyFolder
-from beliefnest.studies.table import Column, ColumnType, Table, lost, of_key, of_result
-from beliefnest.worlds.minecraft.launching import ahead
+from beliefnest.studies.table import CellKind, Column, ColumnType, Table, lost, of_key, of_result
 
 RowT = TypeVar("RowT")
 _COLUMNS: Mapping[type, ColumnType] = {
@@ -140,51 +129,3 @@ def _columns(form: type, identity: Collection[str]) -> Iterator[Column]:
         (kind,) = {*(get_args(each.type) or (each.type,))} - {NoneType}
         read, is_part = of_result(each.name), each.name in identity
         yield Column(each.name, _COLUMNS[kind], read, shown=True, identifies=is_part)
-
-
-def play_suite(
-    folder: Path,
-    kind: CellKind,
-    cells: Sequence[Keyed],
-    about: Mapping[str, Any],
-    models: Iterable[str],
-    on_progress: OnStudyProgress,
-    limits: RunLimits | None = None,
-    jobs: int = 1,
-) -> StudyResult:
-    """Play the cells of a suite without a result in a folder, and return all results.
-
-    Args:
-        folder: Folder of the results; made if it does not exist.
-        kind: Kind of the cells.
-        cells: The cells.
-        about: Further values of the plan.
-        models: Names of the models that the cells ask.
-        on_progress: Function that receives the progress.
-        limits: Limits of tokens and cost; None: the default ones.
-        jobs: Number of cells to play in parallel; with several, each cell opens its models.
-
-    Raises:
-        InputError: The folder holds something else or a suite of other data, or another process
-            plays in it.
-        ModelError: A model does not exist, or its key is missing.
-    """
-    place = StudyFolder.open(folder, kind)
-    planned = [cell.plain() for cell in cells]
-    plan = {**about, "cells": planned, "invalid": [], "versions": own_versions()}
-    place.check_subjects(plan)
-    before = place.plan() if place.has_plan else plan
-    played, wanted = ({cell["variation"] for cell in each["cells"]} for each in (before, plan))
-    if before.get("data") != plan.get("data") and played.isdisjoint(wanted):
-        raise InputError(
-            f"{folder} holds results of {before['data']}, which has nothing in common with "
-            f"{plan['data']}; name another folder"
-        )
-    terms = place.terms(limits or RunLimits())
-    # Answers of a file go on from cell to cell.
-    opened = {name: open_model(name, terms.surroundings, terms.connection()) for name in models}
-    with holding(place.path):
-        place.write_plan(plan)
-        shared = replace(terms, models=opened) if jobs == 1 else terms
-        run_cells(cells, place, shared, jobs, "loky", on_progress, ahead)
-    return StudyResult(place)

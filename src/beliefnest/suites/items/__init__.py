@@ -1,1 +1,0 @@
-"""Sets of items as suites: models answer them, and weaknesses of a model are looked for."""
