@@ -4,8 +4,8 @@ import os
 
 import pytest
 
-from beliefnest.errors import BeliefNestError
-from beliefnest.files import read_regular, read_regular_text
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.files import make_folder, read_regular, read_regular_text
 from beliefnest.llm import resolve_model
 from beliefnest.prompts.templates import load_template
 from beliefnest.scenarios.scenario import Scenario
@@ -52,3 +52,12 @@ def test_a_file_is_read_up_to_its_bound(tmp_path):
     assert read_regular_text(path) == "a\nb"
     with pytest.raises(OSError, match="longer than 3 bytes"):
         read_regular(path, 3)
+
+
+@pytest.mark.parametrize("below", ["", "out", "out/deeper"])
+def test_a_file_in_place_of_a_folder_is_named(tmp_path, below):
+    (tmp_path / "mine").write_text("mine", encoding="utf-8")
+    with pytest.raises(InputError, match=r"mine is no folder; name another folder, or move it"):
+        make_folder(tmp_path / "mine" / below)
+    make_folder(tmp_path / "new" / below)
+    assert (tmp_path / "new" / below).is_dir()

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beliefnest.errors import InputError, MissingExtraError
-from beliefnest.files import replace_file
+from beliefnest.files import make_folder, replace_file
 from beliefnest.studies.accuracy_figure import COLOURS, svg_of
 from beliefnest_benchmarks.curves import Aim, Curve, Point
 
@@ -38,12 +38,7 @@ def checked_folder(folder: Path) -> Path:
         import matplotlib  # noqa: F401
     except ModuleNotFoundError:
         raise MissingExtraError("curves need matplotlib", "plot") from None
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"--curves: the folder {folder} cannot be made: {error.strerror}"
-        ) from None
+    make_folder(folder)
     return folder
 
 

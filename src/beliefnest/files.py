@@ -15,6 +15,8 @@ from typing import BinaryIO, TypeVar
 
 import msgspec
 
+from beliefnest.errors import InputError
+
 _T = TypeVar("_T")
 _LONGEST = 64 * 2**20
 _LONGEST_STEM = 200
@@ -26,6 +28,25 @@ _KINDS = (
     (stat.S_ISCHR, "it is a device"),
     (stat.S_ISBLK, "it is a device"),
 )
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and those above it, unless they are there.
+
+    Raises:
+        InputError: Something else is in its place, or it cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError):
+        places = (each for each in (folder, *folder.parents) if os.path.lexists(each))
+        file = next(each for each in places if not each.is_dir())
+        raise InputError(f"{file} is no folder; name another folder, or move it away") from None
+    except OSError as error:
+        raise InputError(
+            f"the folder {folder} cannot be written: {error.strerror}; check its permissions, or "
+            "name another folder"
+        ) from None
 
 
 def open_regular(path: Path) -> BinaryIO:

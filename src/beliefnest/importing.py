@@ -5,6 +5,7 @@ import functools
 import importlib
 import importlib.util
 import sys
+from collections.abc import Collection
 from importlib.machinery import ModuleSpec
 from importlib.metadata import EntryPoint, EntryPoints, distribution, entry_points
 from pathlib import Path
@@ -123,6 +124,18 @@ def installed_entries(group: str) -> tuple[EntryPoint, ...]:
     """Return the entry points of a group, as `installed` returns each."""
     entries = (installed(group, name) for name in installed_names(group))
     return tuple(entry for entry in entries if entry is not None)
+
+
+def hidden_entries(group: str, built_in: Collection[str] = ()) -> tuple[EntryPoint, ...]:
+    """Return the entry points of other packages whose names this package uses itself.
+
+    Args:
+        group: Group of entry points.
+        built_in: Names that are no entry points of this package.
+    """
+    own = {*_own_entries(group).names, *built_in}
+    there = (each for each in entry_points(group=group) if each.name in own)
+    return tuple(each for each in there if each.dist is None or each.dist.name != _OWN)
 
 
 def told_entry(entry: EntryPoint, what: str) -> str:

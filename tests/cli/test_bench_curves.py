@@ -60,7 +60,7 @@ def test_a_file_is_no_folder_for_curves(capsys: pytest.CaptureFixture[str], plac
     Path("file").write_text("mine")
     assert run_command_line(["bench", "growth", "--curves", place]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert f"--curves: the folder {place} cannot be made" in line
+    assert "file is no folder; name another folder" in line
     assert Path("file").read_text() == "mine"
 
 

@@ -59,6 +59,16 @@ def test_files_get_no_colours_whatever_the_environment_says(
     assert captured.err == "title: doing (0/1)\n"
 
 
+def test_a_phase_with_the_same_total_is_shown_anew(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_on("title") as say:
+        for phase in ("search", "rules"):
+            for done in range(61):
+                say(phase, done, 60)
+    lines = capsys.readouterr().err.splitlines()
+    assert [lines[0], lines[21]] == ["title: search (0/60)", "title: rules (0/60)"]
+    assert len(lines) == 42
+
+
 def test_every_condition_of_a_folder_is_shown(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

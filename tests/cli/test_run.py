@@ -382,3 +382,17 @@ def test_a_folder_in_use_is_refused_and_the_first_run_loses_nothing(
         assert first.returncode == 0, told
     assert len(server.requests) == 1
     assert json.loads(Path("o", "run.json").read_text(encoding="utf-8"))["status"] == "done"
+
+
+def test_a_call_without_await_is_told_at_the_end(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = '  - {agent: ann, program: "goToPosition(bot, new Vec3(5, 1, 5), 0);"}'
+    text = f"{ROOM.partition('probes:')[0]}script:\n{script}\n"
+    (tmp_path / "room.yaml").write_text(text, encoding="utf-8")
+    command = ["run", str(tmp_path / "room.yaml"), "--world", "scripted"]
+    assert run_command_line([*command, "--out", str(tmp_path / "out")]) == 0
+    line = (
+        "1 call stopped at the end of programs, perhaps for lack of `await`; the first: ann: goTo"
+    )
+    assert line in capsys.readouterr().out

@@ -213,6 +213,7 @@ def test_a_table_says_how_things_are_known(talk: Path, capsys: pytest.CaptureFix
         (["show", "RUN", "--png", "then.png", "--height", "900"], "outside the box"),
         (["prompt", "RUN", "--path", "/sally"], "task"),
         (["prompt", "RUN", "--path", "/sally", "--var", "task"], "key=value"),
+        (["prompt", "RUN", "--path", "/sally", "--template", "question"], "with --var NAME=TEXT"),
         (["prompt", "RUN", "--path", "/sally", "--template", "defaul"], "instructions, paper"),
     ],
 )

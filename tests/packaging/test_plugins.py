@@ -103,3 +103,28 @@ def test_what_is_no_task_and_no_suite_is_refused_in_one_line(tmp_path, monkeypat
     )
     assert run_command_line(["suite", "lists", "--data", "bare.py"]) == 2
     assert "the suite lists read list, no ReadStories" in capsys.readouterr().err
+
+
+def test_a_name_of_beliefnests_own_is_told_to_be_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    taken = {
+        "tasks": "joint-lift",
+        "policies": "search",
+        "commands": "run",
+        "suites": "food-trucks",
+    }
+    text = "".join(f"[beliefnest.{group}]\n{name} = other:thing\n" for group, name in taken.items())
+    install(tmp_path, "the-other", f"{text}free = other:thing\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert run_command_line(["list", "--json"]) == 0
+    lines = json.loads(capsys.readouterr().out)["hidden"]
+    assert [
+        line.partition(" of the installed package the-other (other:thing)")[0] for line in lines
+    ] == [
+        "the command 'run'",
+        "the policy 'search'",
+        "the suite 'food-trucks'",
+        "the task 'joint-lift'",
+    ]
+    assert all("is not used: BeliefNest has a " in line for line in lines)

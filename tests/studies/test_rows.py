@@ -11,6 +11,7 @@ from tests.studies.small import SMALL, small_in, study_in
 import beliefnest as bn
 from beliefnest import frames
 from beliefnest.cli.app import run_command_line
+from beliefnest.studies.file import naming_other_kinds
 from beliefnest.studies.study_folder import StudyFolder
 
 # Two questions, one of them about what Bob believes of Ann.
@@ -208,3 +209,41 @@ def test_a_wrong_key_of_a_study_names_the_nearest_one(tmp_path: Path) -> None:
 def test_a_scenario_in_place_of_a_study_is_told(tmp_path: Path) -> None:
     with pytest.raises(bn.ScenarioError, match=r"is a scenario, no study; .*`scenarios: \[small"):
         bn.Study.load(small_in(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("name", "command"), [("sally-anne", "run"), ("joint-lift", "play"), ("t.yaml", "play")]
+)
+def test_what_is_no_study_names_the_command_that_takes_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, command: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("t.yaml").write_text("scenario: {}\ngoal: {}\n", encoding="utf-8")
+    with pytest.raises(
+        bn.ScenarioError, match=f"{name} is a .*, no study; .*beliefnest {command}`"
+    ):
+        bn.Study.load(name)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("conditions: [1]\nscenarios: [sally-anne]", "is a study; .*beliefnest study`"),
+        ("tasks: [joint-lift]", "is a study; .*beliefnest study`"),
+        ("goal: {}\nscenario: {}", "is a task; .*beliefnest play`"),
+        ("name: none", "is missing"),
+    ],
+)
+def test_what_is_no_scenario_names_the_command_that_takes_it(
+    tmp_path: Path, text: str, message: str
+) -> None:
+    file = tmp_path / "other.yaml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(bn.ScenarioError, match=message), naming_other_kinds(str(file)):
+        bn.Scenario.load_all(str(file))
+
+
+def test_a_task_in_place_of_a_scenario_names_the_command_that_takes_it() -> None:
+    message = r"joint-lift is a task; .*beliefnest play`"
+    with pytest.raises(bn.ScenarioError, match=message), naming_other_kinds("joint-lift"):
+        bn.Scenario.load("joint-lift")

@@ -163,8 +163,13 @@ def progress_on(title: str) -> "Iterator[OnProgress]":
         console.width = _width(terminal=False) or _PLAIN_WIDTH
 
         parts: set[tuple[int, int]] = set()
+        last = 0
 
         def say(what: str, done: int, total: int) -> None:
+            nonlocal last
+            if done < last:  # Another phase, perhaps with the same total.
+                parts.clear()
+            last = done
             # A total of 0 means that steps are not counted.
             part = total, _LINES * done // total if total else -1
             if part in parts and total > _LINES:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from beliefnest.cli.report import report_json
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular_text, replace_file
+from beliefnest.files import make_folder, read_regular_text, replace_file
 from beliefnest.locking import holding, is_lock
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.plan.cells import Keyed
@@ -106,7 +106,7 @@ class RunFolder:
                 path = _made(Path("runs"), f"{name}-{now:%Y%m%d-%H%M%S}")
             else:
                 path = wanted
-                path.mkdir(parents=True, exist_ok=True)
+                make_folder(path)
         except OSError as error:
             raise _unwritable(wanted or Path("runs"), error) from None
         with holding(path):
@@ -262,7 +262,7 @@ def kept_scenario_file(out: Path | None, wanted: str) -> Path | None:
 
 def _made(parent: Path, name: str) -> Path:
     """Make and return a new folder; another run may have begun in the same second."""
-    parent.mkdir(parents=True, exist_ok=True)
+    make_folder(parent)
     for each in chain([name], (f"{name}-{number}" for number in count(2))):
         with suppress(FileExistsError):
             (parent / each).mkdir()

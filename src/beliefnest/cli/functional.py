@@ -6,11 +6,12 @@ from typing import Any
 
 from rich.table import Table
 
-from beliefnest.cli.console import Printed, print_report, result_table
+from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import ItemsOptions
-from beliefnest.cli.playing import playing
 from beliefnest.errors import InputError
 from beliefnest.files import replace_file, replacing
+from beliefnest.plan.jobs import OnStudyProgress
+from beliefnest.studies.items.asking import check_readers
 from beliefnest.studies.items.functional.certifying import (
     Certificate,
     certified,
@@ -33,6 +34,7 @@ def run_functional(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The study or a task is wrong, or an episode has no result.
     """
+    check_readers([] if options.model is None else [options.model])
     design = check_functional(Study.load(options.study).design, str(options.study))
     families, seeds, jobs = list(families_of(design)), design.seeds, options.jobs
     model, repeats = options.model, design.repeats
@@ -40,13 +42,19 @@ def run_functional(options: ItemsOptions) -> int:
     there = {each.name for each in options.folder.glob("*")}
     if others := there - own:
         raise InputError(f"{options.folder} holds other files ({min(others)}); name another folder")
-    with playing(options.study.stem, options.folder) as (folder, say):
-        done = [certified(each, seeds, folder / each.folder, jobs, say) for each in families]
-        pairs = [
-            paired(each, model, seeds, repeats, folder / each.folder / "model", jobs, say)
-            for each in families
-            if model is not None
-        ]
+    folder = options.folder
+    with progress_on(options.study.stem) as say:
+
+        def phase(what: str) -> OnStudyProgress:
+            return lambda progress: say(what, progress.done, progress.total)
+
+        done, pairs = [], []
+        for each in families:
+            place, title = folder / each.folder, each.folder
+            done.append(certified(each, seeds, place, jobs, phase(f"certificate of {title}")))
+            if model is not None:
+                asked = phase(f"{model} in {title}")
+                pairs.append(paired(each, model, seeds, repeats, place / "model", jobs, asked))
     content: dict[str, Any] = {"certificates": [each.plain() for each in done]}
     report: list[Printed] = [_certificates(done)]
     if pairs:

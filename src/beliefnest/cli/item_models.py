@@ -17,6 +17,7 @@ from beliefnest.llm.budget import RunLimits
 from beliefnest.plan.cells import Keyed
 from beliefnest.scenarios.judging import unanswered_words
 from beliefnest.studies.counting import count_rows
+from beliefnest.studies.items.asking import check_readers
 from beliefnest.studies.items.cells import ITEM_KIND, item_cells
 from beliefnest.studies.items.functional.pairing import OrderGap, read_gaps
 from beliefnest.studies.items.people import people_cells
@@ -42,6 +43,7 @@ def run_models(options: ItemsOptions) -> int:
     models = [each.strip() for each in (options.models or "").split(",")]
     if not all(models) or len({*models}) < len(models):
         raise InputError(f"--models is {options.models!r}; name each model once, with commas")
+    check_readers(models)
     gaps = _gaps(options.gap or (), models)
     people, notes = (
         people_cells(items.name, items.choices, options.people) if options.people else ([], [])

@@ -1,5 +1,6 @@
 """`beliefnest items`: sets of items, made and made again."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -15,7 +16,7 @@ from beliefnest.studies.items.report import report_of
 from beliefnest.studies.study import Study
 from beliefnest.world.words import counted, listed
 
-_MOST_DROPPED = 5
+_MOST_REASONS = 5
 
 
 def run_make(options: ItemsOptions) -> int:
@@ -28,11 +29,11 @@ def run_make(options: ItemsOptions) -> int:
     names |= {"changes": options.changes}
     own = {name: value for name, value in names.items() if value is not None}
     check_folder(options.folder, options.held_out or 0.0)
-    made, compared, differing = _made(options, {"name": options.study.stem, **own})
+    made, scenes, compared, differing = _made(options, {"name": options.study.stem, **own})
     made.write(options.folder)
     if options.parquet:
         write_parquet_of(made, options.folder)
-    return _print(options, made, compared, differing, "")
+    return _print(options, made, (scenes, compared), differing, "")
 
 
 def run_verify(options: ItemsOptions) -> int:
@@ -43,7 +44,9 @@ def run_verify(options: ItemsOptions) -> int:
     """
     there = read_description(options.folder)
     names = ("name", "held_out", "version", "changes")
-    made, compared, differing = _made(options, {name: getattr(there, name) for name in names})
+    made, scenes, compared, differing = _made(
+        options, {name: getattr(there, name) for name in names}
+    )
     differing += replace(made, made_with=there.made_with).differences(options.folder)
     differing += parquet_differences(made, options.folder)
     if differing and there.made_with != made.made_with:
@@ -52,10 +55,10 @@ def run_verify(options: ItemsOptions) -> int:
     public = there.public_only(options.folder)
     part = "; the held-out part is not there, and the rest" if public else ";"
     same = f"{part} made again with the same bytes"
-    return _print(options, made, compared, differing, same)
+    return _print(options, made, (scenes, compared), differing, same)
 
 
-def _made(options: ItemsOptions, names: Mapping[str, Any]) -> tuple[ItemSet, int, list[str]]:
+def _made(options: ItemsOptions, names: Mapping[str, Any]) -> tuple[ItemSet, int, int, list[str]]:
     """Make a set; return it with what the embedded world says of it."""
     if options.study.is_dir():
         raise InputError(f"{options.study} is a folder; add --models to ask models its items")
@@ -66,14 +69,18 @@ def _made(options: ItemsOptions, names: Mapping[str, Any]) -> tuple[ItemSet, int
 
 
 def _print(
-    options: ItemsOptions, made: ItemSet, compared: int, differing: Sequence[str], same: str
+    options: ItemsOptions,
+    made: ItemSet,
+    compared: tuple[int, int],
+    differing: Sequence[str],
+    same: str,
 ) -> int:
     """Print a set and its differences; return the exit status.
 
     Args:
         options: Options of the command.
         made: The set.
-        compared: Number of items that were compared with the embedded world.
+        compared: Numbers of scenes and of items that were compared with the embedded world.
         differing: Differences.
         same: What to say after its size if there are none; empty: it was not compared.
     """
@@ -83,7 +90,8 @@ def _print(
         "folder": str(options.folder),
         "items": len(made.items),
         "dropped": len(made.dropped),
-        "compared": compared,
+        "scenes": compared[0],
+        "compared": compared[1],
         "differences": differing,
         **({"report": report} if report else {}),
     }
@@ -103,10 +111,17 @@ def _parts(options: ItemsOptions, made: ItemSet, summary: Mapping[str, Any]) -> 
     differing = summary["differences"]
     if report := summary.get("report"):
         yield from (_counts(report), _positions(report), _shortcuts(report))
-    for each in made.dropped[:_MOST_DROPPED]:
-        yield f"dropped: {each.scenario}, probe {each.probe}: {each.why}"
-    if len(made.dropped) > _MOST_DROPPED:
-        yield f"and {len(made.dropped) - _MOST_DROPPED} more; all of them are in dropped.jsonl"
+    # Those to be mended first, then the most frequent.
+    by_reason = Counter(
+        (not each.is_unanswerable, f"{each.scenario}, probe {each.probe}: {each.why}")
+        for each in made.dropped
+    )
+    reasons = sorted(by_reason.items(), key=lambda each: (each[0][0], -each[1]))
+    for (_, reason), count in reasons[:_MOST_REASONS]:
+        yield f"dropped: {counted(count, 'question')} of {reason}"
+    if len(reasons) > _MOST_REASONS:
+        more = counted(len(reasons) - _MOST_REASONS, "more reason")
+        yield f"and {more}; all of them are in dropped.jsonl"
     unanswerable = sum(each.is_unanswerable for each in made.dropped)
     if unanswerable:
         yield (
@@ -115,7 +130,10 @@ def _parts(options: ItemsOptions, made: ItemSet, summary: Mapping[str, Any]) -> 
         )
     yield from differing
     if options.check_embedded:
-        yield f"compared with the embedded world: {counted(summary['compared'], 'item')}"
+        items, scenes = counted(summary["compared"], "item"), counted(summary["scenes"], "scene")
+        if summary["scenes"] < options.check_embedded:
+            scenes = f"all {scenes} of the set ({options.check_embedded} asked for)"
+        yield f"compared with the embedded world: {items} of {scenes}"
 
 
 def _sizes(made: ItemSet) -> Iterator[tuple[str, tuple[object, ...]]]:

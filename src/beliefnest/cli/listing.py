@@ -1,15 +1,19 @@
 """`beliefnest list`: names of installed scenarios, tasks, suites, templates and the like."""
 
+from collections.abc import Iterator
+
+import typer
 from rich.text import Text
 
 from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.terminal_text import say
 from beliefnest.episodes.tasks import task_names
+from beliefnest.importing import hidden_entries, installed_names, told_entry
 from beliefnest.llm.resolve import model_names
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.outline import builtin_outline
 from beliefnest.scenarios.sources import builtin_names
-from beliefnest.suites import suite_names
+from beliefnest.suites import FILMS, suite_names
 from beliefnest.worlds.names import server_forms, world_names
 
 
@@ -30,6 +34,7 @@ def print_installed(*, as_json: bool) -> None:
         "templates": list(BUILT_IN_TEMPLATES),
         "worlds": list(world_names()),
         "models": list(model_names()),
+        "hidden": list(_hidden()),
     }
     table = result_table("scenario", "condition", "about", right=("condition",))
     for scenario in scenarios:
@@ -44,7 +49,41 @@ def print_installed(*, as_json: bool) -> None:
         "models": model_names(),
     }
     lines = (Text(f"{what}: {', '.join(names)}") for what, names in further.items())
-    print_report(content, [table, *lines], as_json=as_json)
+    print_report(content, [table, *lines, *_hidden()], as_json=as_json)
+
+
+def _hidden() -> Iterator[str]:
+    """Yield a line for each part of another package that has a name of this package's own.
+
+    A filter of such a name is an error of its first use.
+    """
+    from beliefnest.cli.app import app
+
+    commands = typer.main.get_command(app)
+    assert isinstance(commands, typer.core.TyperGroup)
+    for what, names in (
+        ("command", (*commands.commands,)),
+        ("kind", ()),
+        ("model", [each.partition(":")[0] for each in model_names()]),
+        ("policy", _policies() if installed_names("beliefnest.policies") else ()),
+        ("server", ()),
+        ("suite", (FILMS,)),
+        ("task", ()),
+        ("world", ()),
+    ):
+        group = "beliefnest.policies" if what == "policy" else f"beliefnest.{what}s"
+        for entry in hidden_entries(group, names):
+            yield (
+                f"{told_entry(entry, what)} is not used: BeliefNest has a {what} of this name; "
+                "rename the one of the package"
+            )
+
+
+def _policies() -> list[str]:
+    """Return the first words of policies' names; they import NumPy, and the list is to be quick."""
+    from beliefnest.episodes.policies import POLICIES
+
+    return [each.partition(":")[0] for each in POLICIES]
 
 
 def print_template(name: str | None) -> None:

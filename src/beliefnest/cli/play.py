@@ -20,10 +20,11 @@ from beliefnest.episodes.record import Budget
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, ModelError, NotBegunError
-from beliefnest.files import new_file
+from beliefnest.files import make_folder, new_file
 from beliefnest.llm.model_settings import query_of
 from beliefnest.locking import holding
 from beliefnest.scenarios.judging import unanswered_words
+from beliefnest.studies.file import naming_other_kinds
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
 
@@ -47,7 +48,8 @@ def play_task(options: PlayOptions) -> int:
     named = _pairs(options.agent or (), "--agent", "NAME=POLICY")
     texts = _pairs(options.set or (), "--set", "NAME=VALUE")
     parameters = {name: _value(text) for name, text in texts.items()}
-    task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
+    with naming_other_kinds(options.task):
+        task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
     policies = {
         agent: with_query(policy, query)
         for agent, policy in {**task.form.policies, **named}.items()
@@ -136,10 +138,7 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
 
 def _made(folder: Path) -> Path:
     """Make a folder, unless it is there, and return it."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder} cannot be made: {error.strerror}") from None
+    make_folder(folder)
     return folder
 
 

@@ -35,11 +35,13 @@ from beliefnest.plan.terms import Terms
 from beliefnest.plan.worker import Worker
 from beliefnest.scenarios.judging import without_result_words
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.file import naming_other_kinds
 from beliefnest.studies.kinds import RUN_KIND
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import lost
 from beliefnest.timeline.store import Journal
 from beliefnest.world.seeds import checked_seed
+from beliefnest.world.words import counted
 from beliefnest.worlds.minecraft.launching import Launch, ahead
 from beliefnest.worlds.names import check_world
 
@@ -178,7 +180,8 @@ def _failures(cells: Sequence[RunCell], results: StudyFolder) -> list[dict[str, 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
     try:
-        return _loaded(options.scenario, options.condition or ())
+        with naming_other_kinds(options.scenario):
+            return _loaded(options.scenario, options.condition or ())
     except ScenarioError:
         # An interrupted run continues with the scenario file that its folder keeps.
         kept = kept_scenario_file(options.out, options.scenario)
@@ -251,6 +254,12 @@ def _parts(
         yield from (line for row in rows for line in row.notes)
     else:
         yield score_table(cells[0].scenario.name, report["scores"])
+    stopped = [each for result in report["runs"] for each in result.get("stopped", ())]
+    if stopped:
+        yield (
+            f"{counted(len(stopped), 'call')} stopped at the end of programs, perhaps for lack of "
+            f"`await`; the first: {stopped[0]}"
+        )
     yield from (*_unread(report["runs"]), *lines)
 
 

@@ -78,10 +78,17 @@ class RunCell(Cell):
                 picture = read_condition(nest, journal, outcome)
             reports = accounts(nest, outcome)
             readings = {"readings": _readings(nest)} if "claims_from" in self.key.setting else {}
+            stopped = _stopped(nest)
         result = {**outcome_json(outcome, self.key.model, place.path, reports), **readings}
+        result["stopped"] = stopped
         self.gallery.add(picture, place)
         run = place.store.relative_to(self.folder).as_posix()
         return {"error": None, **result, "run": run}
+
+
+def _stopped(nest: Nest) -> list[str]:
+    """Return what programs of reality left unfinished, such as calls without `await`."""
+    return [f"{each.agent}: {what}" for each in nest.programs("/") for what in each.unfinished]
 
 
 def _readings(nest: Nest) -> dict[str, object]:

@@ -21,13 +21,14 @@ from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.report import placed_lines
 from beliefnest.cli.terminal_text import printable, say
-from beliefnest.errors import BranchError, InputError, TickError
+from beliefnest.errors import BranchError, InputError, TemplateError, TickError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.pictures.animation import check_animated, save_animation
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import Scene
 from beliefnest.prompts.memory_filters import memory
+from beliefnest.prompts.rendering import check_variables
 from beliefnest.prompts.templates import (
     BUILT_IN_TEMPLATES,
     Template,
@@ -221,6 +222,10 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
         values[key] = value
     with _opened(store_in(run)) as (_, nest, journal):
         source = _template(template, journal.records.run().templates)
+        try:
+            check_variables(source, tuple(values))
+        except TemplateError as fault:
+            raise TemplateError(f"{fault}; give it with --var NAME=TEXT") from None
         say(nest.simulator(path).render(source, **values) + "\n")
 
 

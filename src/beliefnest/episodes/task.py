@@ -184,7 +184,7 @@ class Task:
         if self.form.goal == GoalEntry():
             raise ScenarioError(
                 f"task {self.name}: there is no goal; give conditions under `reach` or `never` "
-                "(in a scenario under `episode`)"
+                "(in a scenario under `episode`); `beliefnest run` plays scenarios without"
             )
         try:
             check_rules(self.form, self.agents, PlainScene(self.agents, Box.between(*box)))

@@ -225,6 +225,8 @@ class Believed:
 
 
 def _alike(names: Sequence[str], options: Sequence[str]) -> str:
+    if shared := [each for each in options if names[0].endswith(f" {each}")]:
+        return f"; several things are labelled {quoted(shared[0])}: give each a label of its own"
     close = [each for name in names for each in difflib.get_close_matches(name, options, 1, 0.8)]
     return f", or mend {quoted(close[0])}" if close else ""
 

@@ -1,6 +1,7 @@
 """YAML files of studies."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -8,11 +9,12 @@ from msgspec.structs import replace
 
 from beliefnest.episodes.policies import policy_beside
 from beliefnest.episodes.task import Task
-from beliefnest.errors import ScenarioError
+from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.document import Document, KeyPath, plain
 from beliefnest.scenarios.form_faults import FormError, converted
 from beliefnest.scenarios.json_schema import wanted_form
 from beliefnest.scenarios.sources import builtin_names
+from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.studies.checking import StudyKeyError, several
 from beliefnest.studies.design import Design, template_named
 from beliefnest.studies.episode_design import EpisodeDesign, Policies, listed
@@ -34,11 +36,10 @@ def read_design(
     Raises:
         ScenarioError: The file is wrong; the message names file, line and key.
     """
-    if {"agents", "map"} & document.root.value.keys():
-        raise ScenarioError(
-            f"{document.source} is a scenario, no study; write a study file with "
-            f"`scenarios: [{Path(document.source).name}]`"
-        )
+    keys_of_file = document.root.value.keys()
+    if {"agents", "map", "scenario"} & keys_of_file:
+        is_task = bool({"scenario", "episode"} & keys_of_file)
+        raise ScenarioError(_no_study(Path(document.source), is_task=is_task))
     try:
         keys = converted(plain(document.root), StudyKeys)
     except FormError as fault:
@@ -56,6 +57,49 @@ def read_design(
         return design_of(replace(beside, **(instead or {})), tuple(templates), constraints)
     except StudyKeyError as fault:
         raise document.fault(fault.path, str(fault)) from None
+
+
+def document_of_study(file: Path) -> Document:
+    """Return the document of a study's file.
+
+    Raises:
+        ScenarioError: The file cannot be read, or the name is that of a scenario or a task.
+    """
+    name = str(file)
+    if not file.exists() and name in (*Task.names(), *builtin_names()):
+        raise ScenarioError(_no_study(file, is_task=name in Task.names()))
+    return read_yaml(file)
+
+
+@contextmanager
+def naming_other_kinds(named: str) -> Iterator[None]:
+    """Name the command that takes a study or task which is given as a scenario.
+
+    Raises:
+        ScenarioError: A scenario cannot be loaded in the block, since it is something else.
+    """
+    try:
+        yield
+    except (ScenarioError, UnknownNameError):
+        if named in Task.names():
+            raise ScenarioError(f"{named} is a task; give it to `beliefnest play`") from None
+        if Path(named).is_file():
+            keys = read_yaml(Path(named)).root.value.keys()
+            if {"scenarios", "tasks"} & keys:
+                how = "give it to `beliefnest study` or `beliefnest items`"
+                raise ScenarioError(f"{named} is a study; {how}") from None
+            if "scenario" in keys:
+                raise ScenarioError(f"{named} is a task; give it to `beliefnest play`") from None
+        raise
+
+
+def _no_study(named: Path, *, is_task: bool) -> str:
+    """Return a message for a scenario or task that is given as a study."""
+    what, command, key = ("task", "play", "tasks") if is_task else ("scenario", "run", "scenarios")
+    return (
+        f"{named} is a {what}, no study; give it to `beliefnest {command}`, or write a study file "
+        f"with `{key}: [{named.name}]`"
+    )
 
 
 def _beside(keys: StudyKeys, folder: Path) -> StudyKeys:

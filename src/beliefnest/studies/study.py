@@ -21,7 +21,6 @@ from beliefnest.plan.terms import Terms
 from beliefnest.prompts.templates import Template
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.sources import read_document
-from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.skills.manifests import SkillDetail
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.cells import plan_cells
@@ -29,7 +28,7 @@ from beliefnest.studies.checking import StudyKeyError, is_amount, is_whole, seve
 from beliefnest.studies.design import Constraint, Design, template_named
 from beliefnest.studies.episode_cells import EpisodeCell, check_player, plan_episodes
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies
-from beliefnest.studies.file import read_design
+from beliefnest.studies.file import document_of_study, read_design
 from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.items.item_set import ItemSet
 from beliefnest.studies.items.making import (
@@ -206,7 +205,7 @@ class Study:
         study = cls.__new__(cls)
         if claims_from is not None:
             requests["claims_from"] = claims_from
-        document = read_yaml(Path(file))
+        document = document_of_study(Path(file))
         study._hold(read_design(document, requests), document)
         return study
 
@@ -487,7 +486,7 @@ class Study:
 
     def check_items(
         self, items: ItemSet, scenes: int, on_item: OnItem | None = None
-    ) -> tuple[int, list[str]]:
+    ) -> tuple[int, int, list[str]]:
         """Play some scenes of the study's items in the embedded world; see `played_otherwise`.
 
         Args:
@@ -506,9 +505,13 @@ class Study:
         self, on_variation: Callable[[int, int], None] = lambda done, total: None
     ) -> tuple[Design, Sequence[Cell]]:
         """Return design and cells; raise InputError if the study plays episodes."""
-        design, plan = self._design, self.plan(on_variation)
+        design = self._design
         if not isinstance(design, Design):
-            raise InputError("questions are those of scenarios; this study plays episodes")
+            raise InputError(
+                "this study plays episodes, and questions are those of scenarios; give it to "
+                "`beliefnest study`, or to `beliefnest items --functional`"
+            )
+        plan = self.plan(on_variation)
         cells = [cell for cell in plan.cells if isinstance(cell, Cell)]
         self._check_valid(plan)
         return design, cells

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular, replace_file, replacing
+from beliefnest.files import make_folder, read_regular, replace_file, replacing
 from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.locking import is_lock
@@ -45,6 +45,17 @@ class PersonCell:
     found: Mapping[str, Any]
 
 
+_OTHER_FOLDERS = {
+    "search.json": "a search of `beliefnest search-items`, which has no rows; run that command "
+    "again with this folder to print its report",
+    "set.json": "a set of items, which has no answers; ask models with `beliefnest items FOLDER "
+    "--models NAMES -o OUT`, and give OUT",
+    "functional.json": "a folder of `beliefnest items --functional`; its tables are in "
+    "functional.json, and its studies are the folders below it",
+}
+"""Files that folders of other commands have, and what to say of these folders."""
+
+
 @dataclass(frozen=True, slots=True)
 class StudyFolder:
     """Folder of a study, a suite or a run.
@@ -71,8 +82,8 @@ class StudyFolder:
             InputError: The folder cannot be made, or holds something else.
         """
         folder = StudyFolder(Path(path), kind)
+        make_folder(folder.path)
         try:
-            folder.path.mkdir(parents=True, exist_ok=True)
             # A study that repeats another one may begin with a folder of cached answers alone.
             strange = any(
                 each != folder.answers and not is_lock(each) for each in folder.path.iterdir()
@@ -98,6 +109,9 @@ class StudyFolder:
                 raise InputError(
                     f"{path} holds a run of an earlier version; run it again in a new folder"
                 )
+            for file, what in _OTHER_FOLDERS.items():
+                if (folder / file).exists():
+                    raise InputError(f"{path} is {what}")
             raise InputError(f"there is no study at {path}; give a folder of `beliefnest study`")
         return StudyFolder(folder, _kind_in(folder / _PLAN))
 

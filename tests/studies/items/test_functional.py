@@ -99,7 +99,10 @@ def test_a_model_answers_and_plays_and_a_figure_is_drawn(tmp_path, capsys):
     )
     command = ["items", str(tmp_path / "small.yaml"), "-o", str(tmp_path / "out"), "--jobs", "1"]
     assert run_command_line([*command, "--functional", "--model", "first-option", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
+    captured = capsys.readouterr()
+    for phase in ("certificate of tell-0 (1/1)", "first-option in tell-0 (1/1)"):
+        assert f"small: {phase}\n" in captured.err
+    told = json.loads(captured.out)
     (certificate,) = told["certificates"]
     assert certificate["certified"]
     assert (certificate["hidden"], certificate["bound"]) == ("missed", 1 / 3)

@@ -105,12 +105,12 @@ def item(made: ItemSet, condition: int, to: str, question: str) -> ItemRecord:
 def test_scenes_are_played_again_in_the_embedded_world(folder, made):
     study = bn.Study.load(folder / "study.yaml")
     of_scene = len(made.items) // 4
-    assert study.check_items(made, 1) == (of_scene, [])
+    assert study.check_items(made, 1) == (1, of_scene, [])
     other = {"left box": "right box", "right box": "left box"}
     wrong = tuple(
         msgspec.structs.replace(each, right=other.get(each.right, "air")) for each in made.items
     )
-    compared, lines = study.check_items(replace(made, items=wrong), 1)
+    _, compared, lines = study.check_items(replace(made, items=wrong), 1)
     assert compared == len(lines) == of_scene
     assert all("in the embedded world: '" in line for line in lines)
 
@@ -296,6 +296,37 @@ def test_options_that_give_no_right_answer_end_with_an_error(tmp_path, capsys):
     out = " ".join(capsys.readouterr().out.split())
     assert "none of the options left box, rihgt box; add it, or mend 'rihgt box'" in out
     assert "1 question of 8 dropped for their options" in out
+
+
+def test_two_containers_with_one_label_are_named_once_for_each_reason(tmp_path, capsys):
+    text = SCENARIO.replace("label: right box", "label: left box")
+    (tmp_path / "boxes.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "study.yaml").write_text("scenarios: [boxes.yaml]\n", encoding="utf-8")
+    assert run_command_line(["items", str(tmp_path / "study.yaml"), "-o", str(tmp_path / "s")]) == 1
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("dropped: ")]
+    hint = "several things are labelled 'left box': give each a label of its own"
+    assert all(line.endswith(hint) for line in lines)
+    assert lines[0].startswith("dropped: 6 questions of boxes, probe both: ")
+    assert len(lines) == len(set(lines)) < 8
+
+
+def test_a_comparison_says_how_many_scenes_were_played(folder, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(bn.Study, "check_items", lambda self, made, scenes, say: (4, 16, []))
+    command = ["items", str(folder / "study.yaml"), "-o", str(tmp_path / "set")]
+    assert run_command_line([*command, "--check-embedded", "9"]) == 0
+    assert "16 items of all 4 scenes of the set (9 asked for)" in capsys.readouterr().out
+    assert run_command_line([*command, "--check-embedded", "4"]) == 0
+    assert "16 items of 4 scenes\n" in capsys.readouterr().out
+
+
+def test_the_offline_model_is_refused_as_it_reads_no_prose(folder, tmp_path, capsys, made):
+    made.write(tmp_path / "set")
+    asked = ["items", str(tmp_path / "set"), "--models", "offline", "-o", str(tmp_path / "o")]
+    assert run_command_line(asked) == 2
+    assert "the model offline reads the sections of prompts and no prose" in capsys.readouterr().err
+    assert not (tmp_path / "o").exists()
+    assert run_command_line(["stats", str(tmp_path / "set")]) == 2
+    assert "is a set of items, which has no answers; ask models" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -214,7 +214,7 @@ def test_twins_tell_the_same_story_but_for_one_factor(place):
     [
         (["--budget", "0"], "budget is 0; give at least 40"),
         (["--model", "nobody"], "no model 'nobody'"),
-        (["--budget", "40", "-o", "study.yaml"], "study.yaml cannot be written: File exists"),
+        (["--budget", "40", "-o", "study.yaml"], "study.yaml is no folder; name another folder"),
         (["--budget", "40", "-o", "."], "is not empty and holds no study"),
     ],
 )

@@ -104,6 +104,68 @@ def test_false_beliefs_are_asked_for_in_many_words(tmp_path, asked):
     assert (items, wrong.row, wrong.answer, done.unread) == (2, 2, "bathtub", ())
 
 
+AWAY = (
+    "{begin} While Jackson is away, Chloe moves the boots to the pantry.",
+    "{begin} Chloe moves the boots from the bathtub to the pantry while Jackson is outside.",
+    "{begin} After Jackson leaves, Chloe moves the boots to the pantry.",
+    "{begin} Chloe moved the boots to the pantry after Jackson left the hall.",
+    "{begin} Jackson leaves. When Jackson is gone, Chloe then puts the boots on the pantry.",
+    "{begin} Once Jackson has left, Chloe takes the boots and puts it in the pantry.",
+    "Chloe is in the hall. Jackson puts the boots in the bathtub and leaves the hall. "
+    "Chloe moves the boots to the pantry.",
+    "Chloe is in the hall. Jackson put the boots on the bathtub before leaving the hall. "
+    "Then Chloe moves the boots to the pantry.",
+    "Jackson has a pair. {begin} Jackson exited the hall. Jackson entered the attic. "
+    "While Jackson is gone, Chloe moved the boots to the pantry.",
+)
+
+
+@pytest.mark.parametrize("told", AWAY)
+def test_what_happens_while_somebody_is_away_is_unseen(tmp_path, told):
+    begin = "Jackson and Chloe are in the hall. The boots is in the bathtub."
+    story = told.format(begin=begin)
+    rows = [
+        {"story": story, "question": asked, "answer": each}
+        for asked in (SEES, "Where do you think Jackson will look for the boots upon returning?")
+        for each in ("bathtub", "pantry")
+    ]
+    rows += [{"story": story, "question": "Where is the boots really?", "answer": "pantry"}]
+    file = tmp_path / "rows.json"
+    file.write_text(json.dumps(rows), encoding="utf-8")
+    done = audit(read_published(file))
+    assert (done.items, done.undetermined, done.unread) == (5, (), ())
+    assert [(each.row, each.answer) for each in done.wrong] == [(2, "bathtub"), (4, "bathtub")]
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        "Chloe secretly moved the boots to the pantry.",
+        "Unknown to Jackson, Chloe moved the boots to the pantry.",
+        "While he is away, Chloe moved the boots to the pantry.",
+        "While Jackson is asleep, Chloe moved the boots to the pantry.",
+        "Chloe moved the boots to the pantry because Jackson left.",
+    ],
+)
+def test_clauses_of_which_nothing_follows_stay_unread(tmp_path, told):
+    file = tmp_path / "rows.json"
+    begin = STORY.partition(" Jackson exited")[0]
+    row = {"story": f"{begin} {told}", "question": SEES, "answer": "bathtub"}
+    file.write_text(json.dumps([row]), encoding="utf-8")
+    done = audit(read_published(file))
+    assert (done.items, done.wrong, len(done.unread)) == (0, (), 1)
+    assert told in done.unread[0].faults[0]
+
+
+def test_a_room_as_a_label_is_not_compared_with_containers(tmp_path):
+    file = tmp_path / "rows.json"
+    asked = "In which room does Jackson think the boots is?"
+    file.write_text(json.dumps([{"story": STORY, "question": asked, "answer": "the hall"}]))
+    done = audit(read_published(file))
+    assert (done.wrong, done.undetermined) == ((), ())
+    assert "has the answer 'hall', a room; give the container in it" in done.unread[0].faults[0]
+
+
 @pytest.mark.parametrize("asked", ["When Jackson returns, what will he say?", "Is he glad?"])
 def test_other_questions_stay_unread(tmp_path, asked):
     file = tmp_path / "rows.json"

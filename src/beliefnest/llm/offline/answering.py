@@ -21,7 +21,7 @@ from beliefnest.world.values import Point
 _NEAR = 3.0
 _OPTION = re.compile(r"^([A-Z])\) (.+)$", re.MULTILINE)
 _NOT_KNOWN = "I do not know"
-_NOTHING = "Nothing that I was told says so."
+_NOTHING = "I answer where an item or player is and what a sign says; nothing told me this."
 _NO_TABLE = (
     "I read sections and the table of the template question, and no prose such as that of story; "
     "use the template question, or another model."

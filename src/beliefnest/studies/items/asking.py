@@ -1,10 +1,12 @@
 """Items that models are asked as text; their answers."""
 
+from collections.abc import Iterable
 from string import ascii_uppercase
 
 import jinja2
 import msgspec
 
+from beliefnest.errors import InputError
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.llm.reading_answers import read_answer
@@ -40,6 +42,15 @@ class ItemAnswer(msgspec.Struct, frozen=True, kw_only=True):
     text: str
     tokens: int = 0
     cost: float | None = None
+
+
+def check_readers(models: Iterable[str]) -> None:
+    """Raise InputError if a model cannot read items, whose texts are prose."""
+    if any(each.partition("?")[0] == "offline" for each in models):
+        raise InputError(
+            "the model offline reads the sections of prompts and no prose, and items are prose; "
+            "name another model, such as chance, first-option or scripted:FILE"
+        )
 
 
 def prompt_of(item: ItemRecord) -> tuple[Message, ...]:

@@ -57,7 +57,7 @@ def played_otherwise(
     items: Iterable[ItemRecord],
     scenes: int,
     on_item: OnItem,
-) -> tuple[int, list[str]]:
+) -> tuple[int, int, list[str]]:
     """Play some scenes of a set in the embedded world, and compare their right answers.
 
     Args:
@@ -68,7 +68,8 @@ def played_otherwise(
         on_item: Function that receives the progress.
 
     Returns:
-        Number of compared items, and a line for each that has another right answer there.
+        Numbers of played scenes and of compared items, and a line for each item that has another
+        right answer there.
 
     Raises:
         BeliefNestError: A script failed; the message names the cell.
@@ -90,7 +91,7 @@ def played_otherwise(
                     f"{record.scenario}, item {record.id}: right is {record.right!r}, and in the "
                     f"embedded world: {there}"
                 )
-    return compared, lines
+    return len(chosen), compared, lines
 
 
 def with_balanced_items(

@@ -6,7 +6,9 @@ and has no other meaning. A sentence of another form is reported, never guessed.
 """
 
 import re
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import msgspec
@@ -39,6 +41,12 @@ class Exited(_Sentence, frozen=True, tag="leave"):
 
 class Returned(_Sentence, frozen=True):
     """Agents enter the room again that they left last."""
+
+    agents: _Agents
+
+
+class Absent(_Sentence, frozen=True):
+    """Agents are away while the next sentence happens; they leave, unless they did before."""
 
     agents: _Agents
 
@@ -176,7 +184,7 @@ StoryEvent = (
 )
 """Sentence that can also be written as an object in JSON."""
 
-Sentence = StoryEvent | Returned | Present | Stayed
+Sentence = StoryEvent | Absent | Returned | Present | Stayed
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +221,8 @@ _AND = r"(?:,\s*(?:and\s+)?|\s+and\s+)"
 _SOME = rf"{_ONE}(?:{_AND}{_ONE})*"
 _AGENT, _HEARER, _AGENTS = rf"(?P<agent>{_ONE})", rf"(?P<hearer>{_ONE})", rf"(?P<agents>{_SOME})"
 _WORD = (
-    r"(?!(?:the|an?|in|into|inside|to|from|out|on|onto|up|and|with|for|that|is|are|was|were)\b)"
+    r"(?!(?:the|an?|in|into|inside|to|from|out|on|onto|up|and|with|for|that|is|are|was|were|after|"
+    r"as|because|before|but|once|so|then|until|when|which|while|who|without)\b)"
     r"[\w'-]+"
 )
 """Word of a name. A name with a word of the grammar in it is another sentence."""
@@ -224,6 +233,7 @@ _THEN = re.compile(
     r"(?:after that|afterwards?|finally|later|meanwhile|next|now|soon|then),? (?=[A-Z]|the )", re.I
 )
 """Words that say no more than the order of the sentences."""
+_THEN_DOES = re.compile(rf"^({_ONE}) then (?=[a-z])")
 _SPACE = re.compile(r'(?P<text>"[^"]*")|\s+')
 _JOINT = re.compile(_AND)
 _A = r"(?:the|a|an|his|her|their)"
@@ -233,7 +243,8 @@ _THING = rf"{_THE}(?P<thing>{_NAME})"
 _CONTAINER = rf"{_THE}(?P<container>{_NAME})"
 _ROOM = rf"(?P<room>{_NAME})"
 _PLACE = rf"{_THE}(?P<place>{_NAME})"
-_INTO = r"(?:back )?(?:in|into|inside)"
+_IN = r"(?:in|inside|on)"
+_INTO = r"(?:back )?(?:in|into|inside|on|onto)"
 _TO = r"(?:back )?(?:into|inside|to)"
 _FROM = rf"(?:from|out of) {_THE}(?P<source>{_NAME})"
 _WALK = r"(?:came|comes|goes|ran|runs|stepped|steps|walked|walks|went)"
@@ -285,9 +296,12 @@ _FORMS: tuple[tuple[str, type[Any]], ...] = (
     (rf"{_AGENT} {_PUTS} {_THING} {_INTO} {_CONTAINER}", Placed),
     (rf"{_AGENT} (?:{_TAKES}|picked up|picks up) {_THING}(?: {_FROM})?", Taken),
     (rf"{_AGENT} (?:picked|picks|takes|took) {_THING} (?:up|out)(?: {_FROM})?", Taken),
-    (rf"(?:The|the|An?|an?) (?P<thing>{_NAME}) (?:is|are|was|were) in {_PLACE}", Located),
-    (rf"There (?:is|was) an? (?P<thing>{_NAME}) in {_PLACE}", Located),
-    (rf"It (?:is|was) in {_PLACE}", Located),
+    (
+        rf"(?:The|the|An?|an?) (?P<thing>{_NAME}) (?:is|are|was|were) (?:now )?{_IN} {_PLACE}",
+        Located,
+    ),
+    (rf"There (?:is|was) an? (?P<thing>{_NAME}) {_IN} {_PLACE}", Located),
+    (rf"It (?:is|was) (?:now )?{_IN} {_PLACE}", Located),
     (rf"(?P<names>{_SOME}) {_ALL}(?:is|are|was|were) {_ALL}in {_PLACE}", Present),
     (rf"{_AGENT} (?P<opens>opened|shut|closed) the door of (?:the )?{_ROOM}", UseDoor),
     (rf'{_AGENT} wrote "(?P<text>[^"]*)" on the sign of (?:the )?{_ROOM}', Write),
@@ -297,11 +311,77 @@ _FORMS: tuple[tuple[str, type[Any]], ...] = (
     (rf"{_AGENTS} (?:dis)?likes? {_THE}(?P<about>{_NAME})", Wait),
     (rf"{_AGENTS} (?:hate|love)s? {_THE}(?P<about>{_NAME})", Wait),
     (rf"{_AGENTS} (?:saw|lost) {_A} (?P<about>{_NAME})", Wait),
+    (rf"{_AGENT} (?:has|had) an? (?P<about>{_NAME})", Wait),
     (r"(?:The )?[Pp]hone rang", Wait),
 )
 """Kinds of sentences; the groups of a form are fields of its kind."""
 
 _KINDS = tuple((re.compile(form), kind) for form, kind in _FORMS)
+
+
+_GONE = (
+    r"(?:is|are|was|were) (?:absent|away|elsewhere|gone|out|outside|not (?:here|there|in the room))"
+)
+_LEAVING = (
+    rf"(?:(?:has|have|had) (?:left|gone|gone out|gone outside)|left|leaves?|exited|exits?|"
+    rf"{_WALK} (?:out|away|off|outside)|is gone)(?: {_THE}{_NAME})?"
+)
+_ABSENCE = (
+    rf"(?:(?:[Aa]s|[Ww]hen|[Ww]hile|[Nn]ow that) {_AGENTS} {_GONE}|"
+    rf"(?:[Aa]fter|[Aa]s soon as|[Oo]nce|[Ww]hen|[Nn]ow that) "
+    rf"{_AGENTS.replace('agents', 'leavers')} {_LEAVING})"
+)
+_WITH_ABSENCE = (
+    re.compile(rf"{_ABSENCE},? (?P<main>[A-Z].*|the .*)"),
+    re.compile(rf"(?P<main>.+?),? {_ABSENCE}"),
+)
+"""Sentences about what happens while somebody is away."""
+_TWO_DEEDS = re.compile(rf"(?P<agents>{_SOME}) .+?(?P<joint>,? and(?: then)?|,? then) (?=[a-z])")
+_BEFORE_LEAVING = re.compile(
+    rf"(?P<first>(?P<agents>{_SOME}) .+?),? before (?:leaving|exiting)(?P<room> {_THE}{_NAME})?"
+)
+
+
+def parse_clauses(number: int, text: str, unit: str = "line") -> tuple[Line, ...]:
+    """Parse a sentence of prose, which may say several things one after the other.
+
+    Raises:
+        InputError: A part is no known sentence.
+    """
+    words = _SPACE.sub(lambda space: space["text"] or " ", text.strip()).removesuffix(".")
+    for form in _WITH_ABSENCE:
+        match = form.fullmatch(words)
+        names = () if match is None else _JOINT.split(match["agents"] or match["leavers"])
+        if match is not None and not any(map(_NOBODY.fullmatch, names)):
+            away = Line(number, text, Absent(tuple(names)), unit)
+            return (away, *_of(text, parse_clauses(number, match["main"], unit)))
+    try:
+        return (parse_line(number, text, unit),)
+    except InputError:
+        if parts := _parts(words, number, unit):
+            return tuple(_of(text, parts))
+        raise
+
+
+def _of(text: str, lines: Iterable[Line]) -> Iterator[Line]:
+    """Yield lines with the whole sentence as their text."""
+    yield from (replace(each, text=text) for each in lines)
+
+
+def _parts(words: str, number: int, unit: str) -> tuple[Line, ...]:
+    """Return the sentences of two deeds of the same agents; empty: it has no such parts."""
+    if match := _BEFORE_LEAVING.fullmatch(words):
+        pairs = [(match["first"], f"{match['agents']} left{match['room'] or ''}")]
+    else:
+        pairs = [
+            (words[: match.start("joint")], f"{match['agents']} {words[match.end() :]}")
+            for match in _TWO_DEEDS.finditer(words)
+            if match.start() == 0
+        ]
+    for pair in pairs:
+        with suppress(InputError):
+            return tuple(line for each in pair for line in parse_clauses(number, each, unit))
+    return ()
 
 
 def parse_all(text: str) -> tuple[tuple[Line, ...], tuple[InputError, ...]]:
@@ -348,6 +428,7 @@ def _parse(line: str, place: str) -> Sentence:
     words = spaced.strip().removesuffix(".")
     if first := _THEN.match(words):
         words = words[first.end() :]
+    words = _THEN_DOES.sub(r"\1 ", words)
     for form, kind in _KINDS:
         match = form.fullmatch(words)
         if match is not None:

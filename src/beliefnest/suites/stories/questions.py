@@ -61,7 +61,8 @@ _FORMS = (
     ),
     re.compile(rf"Does {_CHAIN} {_THING} is (?:in|inside) [\w' -]+ or (?:(?:in|inside) )?[\w' -]+"),
     re.compile(
-        rf"Where does {_CHAIN} (?:{_THING} (?:really |now )?is(?: really| now)?(?: located)?|"
+        rf"Where does {_CHAIN} (?:{_THING} (?:really |now )?is(?: really| now)?(?: located)?"
+        rf"(?: now)?|"
         rf"(?P<who>{_AGENT}) "
         rf"(?:searches|looks|{_WILL} search|{_WILL} look) for {_THING.replace('thing', 'sought')})"
     ),
@@ -75,12 +76,15 @@ _BELIEVER = re.compile(rf"({_AGENT}) {_THINK}(?: |$)")
 
 _RETURN = r"(?:comes back|gets back|returns|walks back|(?:re-?)?enters|arrives|wakes up)[^,]*"
 _WHEN = re.compile(
-    rf"(?:after|as soon as|once|when) (?P<who>{_AGENT}) {_RETURN}, (?P<asked>.+)", re.I
+    rf"(?:after|as|as soon as|once|when) (?P<who>{_AGENT}) {_RETURN}, (?P<asked>.+)", re.I
 )
+_END = r"(?:at|by|in) the end(?: of the story)?"
+_RETURNING = r"(?:after|on|upon) (?:(?:her|his|their) return|coming back|returning)[^,]*"
+_LEAD = re.compile(rf"(?:{_END}|{_RETURNING}), (?P<asked>.+)", re.I)
 """Clauses of time, which change nothing: until somebody is back, it learns nothing."""
 _THEN = re.compile(
     rf"(?P<asked>.+?),? (?:(?:after|as soon as|once|when) (?:he|she|they|{_AGENT}) {_RETURN}|"
-    r"(?:at|by) the end(?: of the story)?)",
+    rf"{_END}|{_RETURNING})",
     re.I,
 )
 _VIEW = re.compile(
@@ -101,6 +105,14 @@ def parse_question(text: str) -> Question:
     words = re.sub(
         r" precisely\b", "", re.sub(r"^in (?:which|what) \w+\b", "Where", words, flags=re.I)
     )
+    words = re.sub(
+        rf"^where do you think (?:that )?({_AGENT}) (will|would) ",
+        r"Where \2 \1 ",
+        words,
+        flags=re.I,
+    )
+    if match := _LEAD.fullmatch(words):
+        return replace(parse_question(match["asked"]), text=text)
     if match := _WHEN.fullmatch(words):
         return replace(parse_question(_PRONOUN.sub(match["who"], match["asked"], 1)), text=text)
     if (match := _THEN.fullmatch(words)) and " beginning" not in words:

@@ -12,6 +12,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.suites.stories.grammar import (
     IT,
+    Absent,
     Entered,
     Exited,
     Line,
@@ -267,7 +268,7 @@ def _with_thing(sentence: Sentence, thing: str) -> Sentence:
 def _actors(sentence: Sentence) -> tuple[str, ...]:
     """Return the agents that do something in a sentence."""
     match sentence:
-        case Entered() | Exited() | Returned() | Stayed():
+        case Absent() | Entered() | Exited() | Returned() | Stayed():
             return sentence.agents
         case Moved() | Placed() | Taken() | UseDoor() | Write() | Opened() | Told() | Whispered():
             return (sentence.agent,)
@@ -356,7 +357,7 @@ class _Reader:
     left: dict[str, str] = field(default_factory=dict)
     said: list[tuple[Line, Told, dict[str, str | None]]] = field(default_factory=list)
 
-    def act(self, number: int) -> Act:  # noqa: PLR0911  # one case a sentence
+    def act(self, number: int) -> Act:  # noqa: PLR0911, PLR0912  # one case a sentence
         """Return the act of a line."""
         line = self.lines[number]
         match line.sentence:
@@ -366,6 +367,8 @@ class _Reader:
                 return self._return(line, agents)
             case Exited(agents, room):
                 return self._exit(number, agents, room)
+            case Absent(agents):
+                return self._be_away(agents)
             case Moved(agent, thing, container, source):
                 return self._move(line, agent, thing, container, source)
             case Placed(agent, thing, container):
@@ -418,6 +421,22 @@ class _Reader:
         self.whereabouts.update(dict.fromkeys(agents))
         self.left.update(dict.fromkeys(agents, room))
         return Go(tuple(agents), shuts)
+
+    def _be_away(self, agents: Sequence[str]) -> Go | Wait:
+        """Return the leaving of agents that are where they have been all the time."""
+        staying = [
+            name
+            for name in agents
+            if self.whereabouts.setdefault(name, None) is not None
+            and self.left.get(name) in (None, self.whereabouts[name])
+        ]
+        if not staying:
+            return Wait()
+        rooms = {name: str(self.whereabouts[name]) for name in staying}
+        shuts = dict.fromkeys(r for room in rooms.values() for r in self._shuts(room, staying))
+        self.left |= rooms
+        self.whereabouts.update(dict.fromkeys(staying))
+        return Go(tuple(staying), tuple(shuts))
 
     def _shuts(self, room: str, agents: Sequence[str]) -> tuple[str, ...]:
         """Return the rooms with shut doors between a room and agents."""

@@ -17,7 +17,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular_text
 from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
-from beliefnest.suites.stories.grammar import Line, parse_line
+from beliefnest.suites.stories.grammar import Line, parse_clauses
 from beliefnest.suites.stories.played_story import check_question
 from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
@@ -180,7 +180,7 @@ def _lines(text: str) -> tuple[list[Line], list[str]]:
         if re.fullmatch(r"\d+[.:)]?", sentence) or not sentence.strip(" *"):
             continue
         try:
-            lines.append(parse_line(number, sentence, "sentence"))
+            lines += parse_clauses(number, sentence, "sentence")
         except InputError as error:
             faults.append(str(error))
     return lines, faults
@@ -196,6 +196,9 @@ def _expected(answers: Sequence[str], story: Story, question: Question) -> str |
         named = dict.fromkeys(a.strip().casefold() if question.door else a for a in answers)
     else:
         named = dict.fromkeys(_named(each.strip(), story) for each in answers)
+    rooms = {_bare(room): room for room in story.rooms}
+    for room in (rooms[_bare(each)] for each in named if _bare(each) in rooms):
+        raise InputError(f"has the answer {quoted(room)}, a room; give the container in it")
     if len(named) > 1:
         raise InputError(f"has several answers, {', '.join(map(quoted, named))}; give one")
     return next(iter(named))

@@ -14,6 +14,7 @@ from typing import Any
 from beliefnest.episodes.shortcuts import CHANCE, rules_of, trained_rule
 from beliefnest.episodes.task import Task
 from beliefnest.errors import ModelError
+from beliefnest.files import make_folder
 from beliefnest.llm.budget import RunLimits
 from beliefnest.locking import holding
 from beliefnest.plan.cells import digest
@@ -163,7 +164,7 @@ def _played(
     Raises:
         ModelError: A cell has no result.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     place = GroupFolder(folder)
     terms = Terms(folder / "answers", place.ledger, None, RunLimits())
     with holding(folder):
