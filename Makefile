@@ -33,6 +33,7 @@ check: ## Linters and type checkers
 	mypy tools
 	lint-imports
 	cd src/beliefnest/worlds/minecraft/node && $(NODE) node_modules/eslint/bin/eslint.js .
+	cd src/beliefnest && $(NODE) viewer/page/web/node_modules/eslint/bin/eslint.js -c worlds/minecraft/node/eslint.config.js skills/code
 	cd src/beliefnest/viewer/page/web && $(NODE) node_modules/eslint/bin/eslint.js .
 	cd src/beliefnest/studies/participants/web && $(NODE) ../../../viewer/page/web/node_modules/eslint/bin/eslint.js .
 

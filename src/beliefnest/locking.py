@@ -77,7 +77,7 @@ class ProcessLock(Owned):
                 if is_free and _is_at(descriptor, path):
                     _note_holder(descriptor)
                     return cls(path, descriptor, None)
-                holder = "" if is_free else _holder(descriptor)
+                holder = "" if is_free else _read_holder(os.pread(descriptor, _LONGEST, 1))
             except OSError as fault:
                 os.close(descriptor)
                 if fault.errno in _NO_LOCKS:
@@ -162,10 +162,6 @@ def _note_holder(descriptor: int) -> None:
     os.truncate(descriptor, 0)
     # On Windows no other process can read the locked byte, which is the first.
     os.pwrite(descriptor, b" " + msgspec.json.encode(holder), 0)
-
-
-def _holder(descriptor: int) -> str:
-    return _read_holder(os.pread(descriptor, _LONGEST, 1))
 
 
 def _read_holder(content: bytes) -> str:

@@ -65,7 +65,7 @@ def _why(nest: Nest, outcome: ProbeOutcome, run: Outcome) -> list[str]:
     places = [each.store for each in about if each.store is not None]
     places += [each.explained for each in outcome.probe.expect if each.explained is not None]
     for container in dict.fromkeys(places):
-        lines += str(belief.explain(container=container)).splitlines()
+        lines += belief.explain(container=container).lines
     for agent in dict.fromkeys(each.placed for each in about if each.placed is not None):
-        lines += str(belief.explain(agent=agent)).splitlines()
+        lines += belief.explain(agent=agent).lines
     return lines

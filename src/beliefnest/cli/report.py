@@ -111,7 +111,7 @@ class OutcomeRow:
         scenario: Scenario with the condition applied.
         cells: Text of each expectation and probe, by heading.
         notes: A line for each unmet expectation and each failed program.
-        failures: Unmet expectations.
+        unmet: Names of the unmet expectations.
         usage: Tokens and cost of models.
         ticks: Length of the run in ticks.
         seconds: Wall time in seconds.
@@ -120,7 +120,7 @@ class OutcomeRow:
     scenario: Scenario
     cells: Mapping[str, str]
     notes: Sequence[str]
-    failures: Sequence[str]
+    unmet: Sequence[str]
     usage: Usage
     ticks: int
     seconds: float
@@ -128,11 +128,17 @@ class OutcomeRow:
     @classmethod
     def of(cls, scenario: Scenario, result: Mapping[str, Any]) -> "OutcomeRow":
         """Return the row of a result."""
+        beliefs = [e["label"] or e["path"] for e in result["expectations"] if not e["ok"]]
+        probes = [
+            f"{each['label'] or f'probe {number}'} ({each['outcome']})"
+            for number, each in enumerate(result["probes"], 1)
+            if each["ok"] is False
+        ]
         return cls(
             scenario,
             result["table"]["cells"],
             result["table"]["notes"],
-            result["failures"],
+            [*beliefs, *probes],
             Usage(**result["usage"]),
             result["ticks"],
             result["seconds"],
@@ -211,10 +217,10 @@ def _verb(scenario: Scenario) -> str:
 
 def _verdict(row: OutcomeRow) -> str:
     """Return `yes`, or `NO` with the names of the unmet expectations; the notes say why."""
-    if not row.failures:
+    if not row.unmet:
         return "[green]yes[/green]"
-    names = (printable(failure.partition(": ")[0]) for failure in row.failures)
-    return "\n".join(["[bold red]NO[/bold red]", *map(escape, names)])
+    names = (escape(printable(name)) for name in row.unmet)
+    return "\n".join(["[bold red]NO[/bold red]", *names])
 
 
 def _notes(outcome: Outcome) -> list[str]:

@@ -107,4 +107,4 @@ class ScenarioStage:
 def _grounds(nest: Nest, probe: Probe) -> list[str]:
     belief = nest[probe.path]
     places = dict.fromkeys(each.explained for each in probe.expect if each.explained is not None)
-    return [line for place in places for line in str(belief.explain(container=place)).splitlines()]
+    return [line for place in places for line in belief.explain(container=place).lines]

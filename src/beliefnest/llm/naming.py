@@ -345,13 +345,11 @@ class Names:
                 and wanted not in _ARTICLES
             ):
                 at += 1
-            if at >= len(tokens) or self._word(tokens[at]) != wanted:
+            word = tokens[at].word if at < len(tokens) else None
+            if word is None or (_stem(word) if self._stemmed else word) != wanted:
                 return None
             at += 1
         return at
-
-    def _word(self, token: Token) -> str:
-        return _stem(token.word) if self._stemmed else token.word
 
     def _short(self, tokens: Sequence[Token], taken: set[int]) -> Iterator[_Mention]:
         """Yield mentions of options by what tells them apart: `blue`, `the blue one`."""

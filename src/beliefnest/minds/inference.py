@@ -192,7 +192,7 @@ class Inference:
             name for name in self.factors if name != "cell" and not name.startswith("credence_now.")
         ]
         changes = []
-        before = {name: self._prior_marginal(name) for name in names}
+        before = {name: self._grouped(name, self._posterior_of(None)) for name in names}
         for number, step in enumerate(self._known):
             after = {name: self._marginal_of(name, number) for name in names}
             if tick is None or step.tick == tick:
@@ -360,9 +360,6 @@ class Inference:
             logs = logs + step.weights
         shares: Floats = np.exp(logs - log_sum(logs.reshape(-1)))
         return shares
-
-    def _prior_marginal(self, factor: str) -> dict[Any, float]:
-        return self._grouped(factor, self._posterior_of(None))
 
     def _marginal_of(self, factor: str, number: int) -> dict[Any, float]:
         if factor not in self.factors:

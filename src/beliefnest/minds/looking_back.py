@@ -24,7 +24,7 @@ def smoothed_steps(tracker: Tracker) -> list[FilterStep]:
     for step in tracker.steps:
         masses = []
         for layers, moments in zip(tracker.trail, by_actual, strict=True):
-            joint = moments[_boundary(layers, step.tick)]
+            joint = moments[sum(layer.tick <= step.tick for layer in layers)]
             masses.append(
                 {
                     state: log_sum((weight + tracker.log_prior).reshape(-1, count))
@@ -98,11 +98,6 @@ def _smoothed(
         }
         masses.append({state: layer.before[state] + weight for state, weight in ahead.items()})
     return masses[::-1]
-
-
-def _boundary(layers: Sequence[Layer], tick: int) -> int:
-    """Count the layers at a tick or before."""
-    return sum(layer.tick <= tick for layer in layers)
 
 
 def _chance(hypotheses: Hypotheses, action: Action | None) -> Floats | None:

@@ -84,7 +84,6 @@ def draw_body(
     at: XY,
     width: float,
     size: float,
-    trails: Mapping[str, tuple[XY, ...]] | None = None,
     listed: Sequence[Store] | None = None,
 ) -> PanelBlock:
     """Draw the panel of a scene without its title.
@@ -95,11 +94,10 @@ def draw_body(
         at: Upper left corner, in points.
         width: Width in points.
         size: Size of texts in points.
-        trails: Ways that agents have gone.
         listed: Containers to list below the plan; None: all.
     """
     left, top = at
-    plan = draw_plan(scene, looks, (left, top), width, size, trails)
+    plan = draw_plan(scene, looks, (left, top), width, size)
     block = PanelBlock(list(plan.marks), plan.bottom + size * 0.7, set(plan.kinds))
     below = scene if listed is None else replace(scene, stores=tuple(listed))
     _margin(block, below, looks, left, width, size)
@@ -216,7 +214,7 @@ def _false_line(block: PanelBlock, text: str, left: float, right: float, size: f
     block.marks += icons.false_sign(at, radius)
     block.kinds.add("false")
     inner = left + radius * 3.6
-    paragraph(block, text, inner, right - inner, size, _darker(Mark.FALSE))
+    paragraph(block, text, inner, right - inner, size, mix(MARKS[Mark.FALSE].colour, INK, 0.35))
 
 
 def _lost_line(
@@ -245,7 +243,3 @@ def _lost_line(
 
 def _place_words(path: str) -> str:
     return "in reality" if path == "/" else f"in {path}"
-
-
-def _darker(mark: Mark) -> str:
-    return mix(MARKS[mark].colour, INK, 0.35)

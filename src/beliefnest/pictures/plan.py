@@ -389,7 +389,7 @@ class _Sheet:
             x, _, z = shown.position
             if not any(store.position == shown.position for store in self._scene.stores):
                 self.marks += icons.device(self._place(x, z), self._cell, shown)
-                self.kinds.add(_device_kind(shown.name))
+                self.kinds.add(next(kind for kind in DEVICES if kind in shown.name).lstrip("_"))
                 if shown.says and self._holds((x + 0.5, z + 0.5)):
                     self._quote(shown.says, self._place(x, z))
                 (x0, y0), (x1, y1) = self._place(x, z), self._place(x + 1, z + 1)
@@ -568,10 +568,6 @@ def _with_height(name: str, above: int) -> str:
     if not above:
         return name
     return f"{name}, {abs(above)} {'up' if above > 0 else 'down'}"
-
-
-def _device_kind(name: str) -> str:
-    return next(kind for kind in DEVICES if kind in name).lstrip("_")
 
 
 def _ground_colour(cell: PlanColumn) -> str:

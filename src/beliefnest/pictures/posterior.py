@@ -68,7 +68,8 @@ def _draw(
     marks: list[Drawn] = list(head.marks)
     scales = [number_text(value) for panel in panels for value in (panel.low, panel.high)]
     left = MARGIN + max(text_width(text, TEXT_SIZE) for text in scales) + 4
-    keys = _SWATCH + 4 + max(text_width(text, TEXT_SIZE) for text in _key_texts(panels))
+    key_texts = [_key_text(panel, name) for panel in panels for name in _keyed(panel)]
+    keys = _SWATCH + 4 + max(text_width(text, TEXT_SIZE) for text in key_texts)
     keys = min(keys, width * 0.32)
     span = (left, width - MARGIN - keys - 4)
     axis = TimeAxis(panels[0].ticks[0], max(end, panels[0].ticks[0] + 1), span)
@@ -121,10 +122,6 @@ def _key_text(panel: PosteriorPanel, name: str) -> str:
     last = panel.series[name][-1]
     value = f"{100 * last:.0f} %" if panel.stacked else number_text(last, digits=1)
     return f"{name}: {value}"
-
-
-def _key_texts(panels: Sequence[PosteriorPanel]) -> list[str]:
-    return [_key_text(panel, name) for panel in panels for name in _keyed(panel)]
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ _MOST_STEPS = 10_000_000
 _TURN = 10
 _CALL = 50
 _FILTER = 500
-"""Steps of a turn of a loop, of a call or filter, and more for one that is not of Jinja."""
+"""Steps of a turn of a loop, of a call, and of a filter that is not one of Jinja's."""
 _PART = 3
 """Steps of a part of a list."""
 _COPIES = 16
@@ -33,7 +33,7 @@ _LARGEST_VALUE = 1_000_000
 _LARGEST_TEXT = 10_000_000
 """Greatest number of letters and parts of any value."""
 _LARGEST_PRODUCT = 100_000_000
-"""Greatest size of a value times that of what a call puts into it."""
+"""Greatest product of the size of a value and the size of what a call puts into it."""
 
 _WIDE = frozenset({"batch", "center", "indent", "round", "slice", "tojson"})
 """Jinja's filters that compute as many parts as a number says."""
@@ -152,7 +152,7 @@ def check_numbers(values: Iterable[object]) -> None:
 
 
 def _check_growth(operator: str, left: object, right: object) -> None:
-    """Raise SecurityError if a value would be too large: Python cannot stop to compute it."""
+    """Raise SecurityError if a value would be too large: nothing interrupts its computation."""
     sized = [each for each in (left, right) if isinstance(each, str | bytes | list | tuple)]
     numbers = [each for each in (left, right) if isinstance(each, int)]
     match operator:

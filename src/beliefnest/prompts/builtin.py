@@ -79,14 +79,10 @@ def chat_log(branch: BranchView) -> str:
     if not state.chat:
         return text.NO_CHATS
     rows = [
-        f"{tick};{_speaker(speaker, to)};{on_one_line(words)}"
+        f"{tick};{speaker}{'' if to is None else f' whispers to {to}'};{on_one_line(words)}"
         for (tick, speaker, words), to in zip(state.chat, state.addressees, strict=True)
     ]
     return "\n".join([_CHAT_HEADER, *rows])
-
-
-def _speaker(speaker: str, to: str | None) -> str:
-    return speaker if to is None else f"{speaker} whispers to {to}"
 
 
 @filter("inventory")

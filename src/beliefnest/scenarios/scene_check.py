@@ -1,6 +1,6 @@
 """Warnings about what a scenario's file says, before anything is played."""
 
-import re
+import math
 from collections.abc import Iterator, Mapping
 from itertools import combinations
 
@@ -11,6 +11,7 @@ from beliefnest.scenarios.content import Probe, ScenarioWarning
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import ScenarioFile
 from beliefnest.scenarios.space import parts_of
+from beliefnest.skills.javascript import nodes_below, parsed
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
@@ -20,8 +21,7 @@ from beliefnest.world.words import listed
 _CATCHES = 4.0
 """Blocks from the receiver within which somebody else may catch what is thrown."""
 
-_GIVING = re.compile(r"giveItemToOther\s*\(\s*\w+\s*,\s*(['\"`])(?P<name>\w+)\1")
-"""Gift to an agent that the program names; other calls are not checked."""
+_GIVING = "giveItemToOther"
 
 
 def scene_warnings(
@@ -129,7 +129,7 @@ def _gifts(file: ScenarioFile, snapshot: Snapshot) -> _Found:
     near = {
         frozenset(pair)
         for pair in combinations(snapshot.agents, 2)
-        if _distance(snapshot, *pair) <= _CATCHES
+        if math.dist(*(snapshot.agents[name].position for name in pair)) <= _CATCHES
     }
     met: set[frozenset[str]] = set()
     for number, step in enumerate(file.script):
@@ -137,8 +137,7 @@ def _gifts(file: ScenarioFile, snapshot: Snapshot) -> _Found:
         if step.agent is not None and step.program is not None:
             programs = {**programs, step.agent: step.program}
         for giver, program in programs.items():
-            for call in _GIVING.finditer(program):
-                receiver = call["name"]
+            for receiver in _receivers(program):
                 others = [
                     name
                     for name in snapshot.agents
@@ -158,9 +157,13 @@ def _gifts(file: ScenarioFile, snapshot: Snapshot) -> _Found:
                     )
 
 
-def _distance(snapshot: Snapshot, one: str, other: str) -> float:
-    here, there = (snapshot.agents[name].position for name in (one, other))
-    return float(np.linalg.norm(np.subtract(here, there)))
+def _receivers(program: str) -> Iterator[str]:
+    """Yield the agent of each gift of a program, of those gifts whose agent it names as a text."""
+    for node in nodes_below(parsed(program.encode())) if _GIVING in program else ():
+        if node.type == "arguments" and node.parent.children[0].text == _GIVING.encode():
+            texts = [each for each in node.named_children if each.type != "comment"][1:2]
+            strings = ("string", "template_string")
+            yield from (each.text.decode()[1:-1] for each in texts if each.type in strings)
 
 
 def _options(file: ScenarioFile) -> _Found:

@@ -5,12 +5,12 @@ directions, or that hold positions in another form, are refused.
 """
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from beliefnest.errors import InputError
-from beliefnest.skills.javascript import parsed
+from beliefnest.skills.javascript import nodes_below, parsed
 from beliefnest.world.texts import quoted
 
 _COMPUTED = frozenset(
@@ -53,7 +53,7 @@ def rewritten(program: str, by: Rewriting) -> str:
     """
     source = program.encode()
     edits: list[tuple[int, int, str]] = []
-    for node in _nodes(_tree(source)):
+    for node in nodes_below(_tree(source)):
         edits += _edits(node, by)
     for start, end, text in sorted(edits, reverse=True):
         source = source[:start] + text.encode() + source[end:]
@@ -62,18 +62,10 @@ def rewritten(program: str, by: Rewriting) -> str:
 
 def _tree(source: bytes) -> _Node:
     root = parsed(source)
-    for node in _nodes(root):
+    for node in nodes_below(root):
         if node.is_missing or node.type == "ERROR":
             raise _refused(node, "is not valid JavaScript")
     return root
-
-
-def _nodes(root: _Node) -> Iterator[_Node]:
-    waiting = [root]
-    while waiting:
-        node = waiting.pop()
-        yield node
-        waiting.extend(reversed(node.children))
 
 
 def _edits(node: _Node, by: Rewriting) -> list[tuple[int, int, str]]:

@@ -1,7 +1,8 @@
 """Playing the cells of a recorded study again, from its folder alone and without any model."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -175,12 +176,8 @@ def _differing_cells(
         if failed is not None and failed["error"] is not None:
             yield PairedDifference(where, ERROR, None, failed["error"])
             continue
-        pairs = list(differing_rows(before, after, _probe_in(where)))
+        pairs = list(differing_rows(before, after, partial("{}, probe {}".format, where)))
         yield from pairs or differing_contents(recorded.folder.cell(name), failed, where, ("run",))
-
-
-def _probe_in(file: str) -> Callable[[int], str]:
-    return lambda number: f"{file}, probe {number}"
 
 
 @dataclass(frozen=True)

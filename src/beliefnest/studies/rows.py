@@ -78,10 +78,6 @@ def _beliefs_ok(source: RowSource) -> bool | None:
     return all(each["ok"] for each in expectations) if expectations else None
 
 
-def _script_ticks(source: RowSource) -> int | None:
-    return source.found.get("ticks")
-
-
 PROBES = Table(
     results=_results,
     first=(
@@ -121,7 +117,7 @@ PROBES = Table(
         Column("outcome", "string", of_result("outcome"), shown=True),
         Column("why_not", "string", of_result("why_not"), shown=True),
         Column("beliefs_ok", "bool", _beliefs_ok),
-        Column("script_ticks", "int64", _script_ticks),
+        Column("script_ticks", "int64", lambda source: source.found.get("ticks")),
         Column("ticks", "int64", of_result("ticks"), shown=True),
         # Minecraft time of the probe's program.
         Column("seconds", "float64", of_result("seconds")),

@@ -119,14 +119,23 @@ class Chunks:
             self._write(timeline, packed + at, loose[part], decoded[part], agents_now)
         return packed + len(loose) - len(loose) % CHUNK_ENTRIES
 
-    def raw(
+    def raw(self, timeline: int, start: int, stop: int) -> Iterator[msgspec.Raw]:
+        """Yield the encoded entries with indexes start to stop - 1; arguments as for `entries`.
+
+        Raises:
+            StoreError: An entry is missing or damaged.
+        """
+        for _, part in self._parts(timeline, start, stop):
+            yield from part
+
+    def entries(
         self,
         timeline: int,
         start: int,
         stop: int,
-        gone: Callable[[], BranchError | None] | None = None,
-    ) -> Iterator[msgspec.Raw]:
-        """Yield the encoded entries with indexes start to stop - 1.
+        gone: Callable[[], BranchError | None] = lambda: None,
+    ) -> Iterator[Entry]:
+        """Yield the entries with indexes start to stop - 1.
 
         Args:
             timeline: Row id of the timeline.
@@ -135,33 +144,23 @@ class Chunks:
             gone: Returns the error to raise if the timeline was deleted meanwhile, otherwise None.
 
         Raises:
-            StoreError: An entry is missing or damaged.
-        """
-        for _, part in self._parts(timeline, start, stop, gone):
-            yield from part
-
-    def entries(
-        self,
-        timeline: int,
-        start: int,
-        stop: int,
-        gone: Callable[[], BranchError | None] | None = None,
-    ) -> Iterator[Entry]:
-        """Yield the entries with indexes start to stop - 1; arguments and errors as for `raw`.
-
-        StoreError also if an entry is out of bounds, or not as its chunk tells.
+            StoreError: An entry is missing, damaged, out of bounds, or not as its chunk tells.
         """
         for chunk, part in self._parts(timeline, start, stop, gone):
             yield from self._decoded_all(chunk, part)
 
     def _parts(
-        self, timeline: int, start: int, stop: int, gone: Callable[[], BranchError | None] | None
+        self,
+        timeline: int,
+        start: int,
+        stop: int,
+        gone: Callable[[], BranchError | None] = lambda: None,
     ) -> Iterator[tuple[_Chunk, list[msgspec.Raw]]]:
         """Yield chunks, each with those of its encoded entries that lie from start to stop - 1."""
         # Query anew for each chunk: a writer may join chunks between two reads.
         while start < stop:
             chunk = self._chunk(timeline, "first <= ? ORDER BY first DESC", start)
-            missed = gone() if chunk is None and gone is not None else None
+            missed = gone() if chunk is None else None
             if missed is not None:
                 raise missed
             part = []

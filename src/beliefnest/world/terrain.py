@@ -106,7 +106,7 @@ class Lattice:
         """Return the numbers of the chunks with some cells of a box in chunks, in order.
 
         Args:
-            x: Index of the first cell along x, and of the last one and one.
+            x: Index of the first cell along x, and the index after the last one.
             y: The same along y.
             z: The same along z.
         """
@@ -121,7 +121,7 @@ class Lattice:
     def ranges(self, low: Index, high: Index) -> list[list[tuple[int, int, int]]]:
         """Return by axis the chunks with cells from `low` to before `high`.
 
-        Each is the number of the chunk along the axis, and its first and its last cell and one.
+        Each is the number of the chunk along the axis, its first cell, and the cell after its last.
         """
         if self.is_one:
             return [[(0, a, b)] if a < b else [] for a, b in zip(low, high, strict=True)]

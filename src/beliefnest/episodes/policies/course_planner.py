@@ -37,9 +37,9 @@ REACHED, OPEN, VIOLATED = 0.0, 1.0, 2.0
 
 
 _FEW = 3
-"""Number of other agents that may all replan as often as the bounds say."""
+"""Greatest number of other agents for which each may replan as often as the bounds say."""
 _MOST_CHANGES = 3
-"""Number of times that all other agents together replan within a plan, if they are more."""
+"""Greatest number of replans within a plan, of all other agents together, if there are more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -391,7 +391,7 @@ class _Planning:
         return (OPEN, round(distance(self._goal, end.mind), 6), cost)
 
     def _pass(self, node: _Node, mine: Performer | None) -> bool:
-        """Let time pass, at most to the end of a round; return True if there was a reason to."""
+        """Let time pass, at most to the end of a round; return False if nobody may act."""
         passed = node.elapsed % self._round
         if not passed:
             self._change_minds(node)
@@ -485,8 +485,8 @@ class _Planning:
     def _telling(self, mind: Imagination) -> Call | None:
         """Return something true that agents with the same goal do not know; None: there is nothing.
 
-        No course reaches the goal as far as the agent can imagine the others. But one may plan
-        better that learns where things are, also an agent whose place is unknown.
+        It is told if no course reaches the goal with the other agents as this one imagines them.
+        An agent that learns where things are, even one whose place is unknown, may plan better.
         """
         most = self._goal.messages
         if not self._speaks or self._opponents or most is not None:

@@ -106,7 +106,7 @@ def read_prompt(text: str) -> PromptReading:
 
 
 def _sections(text: str) -> dict[str, list[str]]:
-    """Return the lines below each heading; the last section of a name counts."""
+    """Return the lines below each heading; of sections with the same heading, those of the last."""
     sections: dict[str, list[str]] = {}
     lines: list[str] = []
     for line in text.splitlines():

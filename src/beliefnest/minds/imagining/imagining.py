@@ -204,4 +204,4 @@ def _warn(imagined: Imagined) -> None:
 
 
 def _say_nothing(what: str, done: int, total: int) -> None:
-    """Progress that nobody asked for."""
+    """Report no progress."""

@@ -100,7 +100,7 @@ class HistoryDraws:
 
     @property
     def effective_size(self) -> float:
-        """The effective number of ancestors (Kish): the square of the sum by the sum of squares."""
+        """Effective number of ancestors (Kish): square of the sum of weights / sum of squares."""
         return _effective(self.particles)
 
     def _courses(self) -> list[Course]:
@@ -183,7 +183,7 @@ class HistoryDraws:
             self._resample(tick)
 
     def _lost(self, misfits: Mapping[Course, str | None], tick: int) -> Lost:
-        """Return the most frequent reason; a contradiction in a history goes before percepts."""
+        """Return the most frequent contradiction within histories, or else misfit with percepts."""
         last = [each.course for each in self.particles]
         faults = [course.contradiction for course in last if course.contradiction is not None]
         if faults:

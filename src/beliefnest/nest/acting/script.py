@@ -59,7 +59,9 @@ def _play_step(engine: Engine, number: int, step: Step) -> None:
         if not result.ok:
             label = f" ({step.label})" if step.label else ""
             where = f"{step.where}: " if step.where else ""
-            fault = BodyError if result.killed or _is_of_bot(result) else ProgramError
+            # A bot fails, for example, if its connection is lost.
+            by_bot = result.error is not None and result.error.kind == "bot"
+            fault = BodyError if result.killed or by_bot else ProgramError
             raise fault(
                 f"{where}step {number + 1}{label}: the program of {agent} failed: {result.error}"
                 f"{_unfilled(step.programs[agent], result)}"
@@ -72,8 +74,3 @@ def _unfilled(program: str, result: ProgramResult) -> str:
         return ""
     name = program.partition("${")[2].partition("}")[0]
     return f"; '${{{name}}}' names no parameter of the scenario"
-
-
-def _is_of_bot(result: ProgramResult) -> bool:
-    """Return True if a program failed because of its bot, for example by a lost connection."""
-    return result.error is not None and result.error.kind == "bot"

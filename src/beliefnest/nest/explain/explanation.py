@@ -30,11 +30,16 @@ class Explanation:
         return f"<explanation at tick {self.tick}:\n{self}>"
 
     def _repr_html_(self) -> str:
-        return html_lines(str(self).splitlines())
+        return html_lines(self.lines)
 
     def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+    @property
+    def lines(self) -> list[str]:
+        """Return the chain in words."""
         lines = explanation_lines(self.element, self.fact, self.levels)
         if self.before is not None:
             lines.append(f"Before the fork at tick {self.before.tick}:")
-            lines.extend(f"  {line}" for line in str(self.before).splitlines())
-        return "\n".join(lines)
+            lines.extend(f"  {line}" for line in self.before.lines)
+        return lines

@@ -37,11 +37,9 @@ class Labelled:
                 if not isinstance(entry, Frame) and entry.path != key.path:
                     continue
                 for at in entry.blocks.keys() & places:
-                    if self._is_other(at, registry, plain_state(entry.blocks[at])):
+                    state = plain_state(entry.blocks[at])
+                    if state < 0 or registry.name(state) != self._kinds[at]:
                         self._lost.setdefault(at, entry.tick)
-
-    def _is_other(self, at: Position, registry: Registry, state: int) -> bool:
-        return state < 0 or registry.name(state) != self._kinds[at]
 
     def has(self, at: Position, tick: int) -> bool:
         """Return True if a thing that has a label is still there at a tick."""

@@ -4,8 +4,8 @@ const { withContainer, move } = require('./lib/chests')
 
 function shortfall (position, { item, count, there, room, moved }) {
   const reason = there < count ? `the inventory holds ${there}` : `the chest has room for ${room}`
-  const found = Math.min(there, room) < count ? reason : 'somebody else put something in at the same time'
-  return `${count} ${item.name} to be put into the chest at ${show(position)}, ${found}; ${moved} put in`
+  const cause = Math.min(there, room) < count ? reason : 'somebody else put something in at the same time'
+  return `${count} ${item.name} to be put into the chest at ${show(position)}, ${cause}; ${moved} put in`
 }
 
 module.exports = {

@@ -27,8 +27,8 @@ module.exports = {
       const point = start.plus(ahead.scaled(gone))
       const there = () => Math.hypot(bot.entity.position.x - point.x, bot.entity.position.z - point.z) <= 1.5
       await walk(context, new goals.GoalNearXZ(point.x, point.z, 1), there, point, `${rounded(point)}, further on`)
-      const found = await callback()
-      if (found) return found
+      const result = await callback()
+      if (result) return result
       if (gone >= limit) break
     }
     await settle(context)

@@ -4,8 +4,8 @@ const { withContainer, move } = require('./lib/chests')
 
 function shortfall (position, { item, count, there, room, moved }) {
   const reason = there < count ? `it holds ${there}` : `there was room for ${room} in the inventory`
-  const found = Math.min(there, room) < count ? reason : 'somebody else took from it at the same time'
-  return `${count} ${item.name} asked for from the chest at ${show(position)}, ${found}; ${moved} taken`
+  const cause = Math.min(there, room) < count ? reason : 'somebody else took from it at the same time'
+  return `${count} ${item.name} asked for from the chest at ${show(position)}, ${cause}; ${moved} taken`
 }
 
 module.exports = {

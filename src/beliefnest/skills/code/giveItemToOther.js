@@ -63,8 +63,8 @@ module.exports = {
     } finally {
       watcher.stop()
     }
-    const given = watcher.takenBy(otherName)
-    if (given < wanted) fail(`${otherName} picked up ${given} of the ${wanted} ${item.name} that were tossed. The rest lies on the ground, was taken by somebody else, or came back.`)
+    const taken = watcher.takenBy(otherName)
+    if (taken < wanted) fail(`${otherName} picked up ${taken} of the ${wanted} ${item.name} that were tossed. The rest lies on the ground, was taken by somebody else, or came back.`)
   }
 }
 

@@ -16,8 +16,8 @@ module.exports = {
   ],
   example: 'await say(bot, "Hello, Anne! The diamond is here.", [located("diamond", new Vec3(2, -51, -4))])',
   check: (context, msg, claims) => [speech(context, 'msg', msg), checked(context, claims)],
-  async run (context, text, told) {
-    if (told.length > 0) context.emit({ kind: 'claims', detail: { text, claims: told } })
+  async run (context, text, claims) {
+    if (claims.length > 0) context.emit({ kind: 'claims', detail: { text, claims } })
     await context.bot.chat(text)
     await ticks(context, 1)
   }

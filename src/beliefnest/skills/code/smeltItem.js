@@ -1,6 +1,6 @@
 'use strict'
 const { blockPosition, count: checkCount, item: checkItem, show } = require('./lib/arguments')
-const { isUnseen, nameOf } = require('./lib/known')
+const { nameOf } = require('./lib/known')
 const { answered } = require('./lib/answers')
 const { walkToUse } = require('./lib/walking')
 const { countOf, contents } = require('./lib/inventory')

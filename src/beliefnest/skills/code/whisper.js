@@ -21,8 +21,8 @@ module.exports = {
   example: 'await whisper(bot, "anne", "The diamond is in the left chest.", [located("diamond", new Vec3(2, -51, -4))])',
   check: (context, otherName, msg, claims) =>
     [otherAgent(context, 'otherName', otherName), speech(context, 'msg', msg, LONGEST), checked(context, claims)],
-  async run (context, to, text, told) {
-    if (told.length > 0) context.emit({ kind: 'claims', detail: { text, to, claims: told } })
+  async run (context, to, text, claims) {
+    if (claims.length > 0) context.emit({ kind: 'claims', detail: { text, to, claims } })
     await context.bot.whisper(to, text)
     await ticks(context, 1)
   }

@@ -69,7 +69,7 @@ def read_film(nest: Nest, path: str, start: int) -> SceneFilm:
     for tick, sentence in captions(view):
         then = min(tick, end)
         texts[then] = f"{texts[then]} {sentence}" if then in texts else sentence
-    ticks = sorted({*_thinned(changes), *texts, end})
+    ticks = sorted({*changes[:: max(1, math.ceil(len(changes) / _MOST))], *texts, end})
     pictures = _pictures(nest, path, ticks, view.names)
     times = _durations(ticks, texts)
     words: Iterator[str] = itertools.accumulate(
@@ -81,10 +81,6 @@ def read_film(nest: Nest, path: str, start: int) -> SceneFilm:
         for picture, ms, caption in zip(pictures, times, words, strict=True)
     ]
     return SceneFilm(tuple(distinct), tuple(_joined(frames)))
-
-
-def _thinned(ticks: Sequence[int]) -> Sequence[int]:
-    return ticks[:: max(1, math.ceil(len(ticks) / _MOST))]
 
 
 def _durations(ticks: Sequence[int], texts: Mapping[int, str]) -> list[int]:

@@ -1,5 +1,6 @@
 """Files of stories with questions and expected answers."""
 
+import json
 import re
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -125,7 +126,7 @@ def read_items(path: Path, rows: Collection[int] | None = None) -> ReadStories:
         raise InputError(f"{path} cannot be read: {error.strerror}; give a JSON file") from None
     except msgspec.DecodeError as error:
         raise InputError(
-            f"{path}{line_of(text, error)}: {error}; give an array of rows with 'story', "
+            f"{path}, line {_line_of_fault(text)}: {error}; give an array of rows with 'story', "
             "'question' and 'answer', or an object with that array under 'data'"
         ) from None
     if rows is not None and not set(rows) <= set(range(1, len(every) + 1)):
@@ -156,20 +157,15 @@ def read_items(path: Path, rows: Collection[int] | None = None) -> ReadStories:
     return ReadStories(ready, tuple(unread))
 
 
-_BYTE = re.compile(r"\(byte (\d+)\)")
-
-
-def line_of(text: bytes, error: msgspec.DecodeError) -> str:
-    """Return the line of a text at which a decoder failed, such as `, line 3`."""
-    match = _BYTE.search(str(error))
-    if match is not None:
-        at = min(int(match[1]), len(text))
-    elif "truncated" in str(error):
-        at = len(text.rstrip())
-    else:
-        at = 0
-    line = text.count(b"\n", 0, at) + 1
-    return f", line {line}"
+def _line_of_fault(text: bytes) -> int:
+    """Return the line at which a text stops being JSON; 1: it is JSON of another form."""
+    try:
+        json.loads(text.rstrip())
+    except json.JSONDecodeError as fault:
+        return fault.lineno
+    except (UnicodeDecodeError, RecursionError):
+        pass
+    return 1
 
 
 _NUMBERED = re.compile(r"\s*\d+\W*\s")

@@ -46,7 +46,7 @@ def _block(
         what, place = f"the sign of the {room} says", played.plan.signs[room]
         there, wanted = map(_saying, (answer.text, expected))
     line = f"{what} {there} in {answer.path}, expected {wanted}"
-    return (line, *str(played.asked(question).explain(block=place)).splitlines())
+    return (line, *played.asked(question).explain(block=place).lines)
 
 
 def _saying(text: str | None) -> str:
@@ -70,7 +70,7 @@ def _perceptions(
         lines.append(
             f"the {place.container}, a barrel at {position}; {item} is the {answer.thing}:"
         )
-        lines += str(simulator.explain(container=position)).splitlines()
+        lines += simulator.explain(container=position).lines
     return lines
 
 

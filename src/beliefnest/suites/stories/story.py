@@ -221,10 +221,10 @@ def story_of(lines: Sequence[Line]) -> Story:
 
 
 def _named(lines: Sequence[Line]) -> Iterator[Line]:
-    """Yield the lines with the names of things in place of `it`, and with known kinds of names.
+    """Yield the lines with the names of things in place of `it`; agents and things are told apart.
 
-    `it` is the thing that was named last. A remark about a name that is no thing of the story
-    leaves open what `it` is.
+    `it` is the thing that was named last. If a remark names something else after that, `it` is
+    ambiguous.
 
     Raises:
         InputError: `it` stands for nothing, or for one of several things.
@@ -250,7 +250,7 @@ def _named(lines: Sequence[Line]) -> Iterator[Line]:
                     raise line.fault("no earlier line names a thing that 'it' could be")
                 if doubt is not None:
                     raise line.fault(f"'it' may be the {last} or the {doubt}; name the thing")
-                thing, sentence = last, _with_thing(sentence, last)
+                thing, sentence = last, msgspec.structs.replace(sentence, thing=last)
             if not (isinstance(sentence, Located) and thing in holders):
                 last, doubt = thing, None
         if isinstance(sentence, Wait) and sentence.about is not None:
@@ -259,10 +259,6 @@ def _named(lines: Sequence[Line]) -> Iterator[Line]:
             elif sentence.about not in holders | agents:
                 doubt = sentence.about
         yield replace(line, sentence=sentence)
-
-
-def _with_thing(sentence: Sentence, thing: str) -> Sentence:
-    return msgspec.structs.replace(sentence, thing=thing)
 
 
 def _actors(sentence: Sentence) -> tuple[str, ...]:
@@ -458,7 +454,7 @@ class _Reader:
                 raise line.fault(f"{agent} is {where}; let {agent} enter the {room} first")
 
     def _since_beginning(self, agent: str, room: str) -> str | None:
-        """Return the room of an agent; one of whom no line said anything was there all the time."""
+        """Return the room of an agent; one that no line has named yet was always in `room`."""
         if agent not in self.whereabouts:
             self.whereabouts[agent] = room
             if room != WAITING_ROOM:
@@ -543,7 +539,7 @@ class _Reader:
         Args:
             line: The line.
             agent: The agent.
-            room: Room of an agent of whom no line said anything; None: such an agent is in none.
+            room: Room in which an agent that no line has named yet is; None: it is in none.
         """
         room_found = self.whereabouts.get(agent)
         if room is not None:
@@ -587,9 +583,9 @@ class _Reader:
         return place
 
     def _room_near(self, number: int, agent: str | None = None) -> str:
-        """Return the room of an agent, or that agents entered last before a line or next after it.
+        """Return the only room, or that of an agent, or the one that agents entered last.
 
-        In a story with one room, that is the room.
+        If agents entered none before the line, it is the one that they enter next.
         """
         if len(self.rooms) == 1:
             return self.rooms[0]

@@ -68,8 +68,7 @@ def _told_reasons(
     """Return the answers of `explanation_of` for several ticks and things, found together."""
     reasons = reader.explain(key, path, [(tick, _element(reader, thing)) for tick, thing in asked])
     return [
-        {"t": tick, "lines": str(each).splitlines()}
-        for (tick, _), each in zip(asked, reasons, strict=True)
+        {"t": tick, "lines": each.lines} for (tick, _), each in zip(asked, reasons, strict=True)
     ]
 
 

@@ -98,10 +98,6 @@ class BotReads:
         state = int(self._now.blocks[x, y, z])
         return None if state < 0 else state
 
-    def sign_at(self, cell: Position) -> str:
-        """Return the text of a sign; empty if none is known."""
-        return self._now.signs.get(cell, "")
-
     @property
     def _now(self) -> Sensed:
         if self._sensed is None or self._sensed[0] != self._world.now:
@@ -129,7 +125,7 @@ class BotReads:
         if state is None:
             return None
         block = {"$": "b", "s": state, "c": list(cell), "l": [0, 0]}
-        text = self.sign_at(cell)
+        text = self._now.signs.get(cell, "")
         return {**block, "t": text} if text else block
 
 

@@ -60,7 +60,7 @@ class Circuit:
     def consequences(self, changed: Position) -> dict[Position, int]:
         """Return the new states of wires and other blocks that a change affects, in order.
 
-        They are taken note of, too. A lamp is in the result as soon as it loses power.
+        These are noted as well, as by `note`. A lamp is in the result as soon as it loses power.
 
         Args:
             changed: Position of the change, which the world or `note` tells already.

@@ -203,12 +203,10 @@ class Guest:
 
     def _fault(self, error: Exception) -> GuestEndedError:
         if self.ended is None:
-            self.end(*(_uncaught(error) if isinstance(error, GuestError) else self._trapped()))
+            trapped = ("fuel" if self._engine.fuel < 0 else "stack", "trap")
+            self.end(*(_uncaught(error) if isinstance(error, GuestError) else trapped))
         assert self.ended is not None
         return self.ended
-
-    def _trapped(self) -> tuple[str, str]:
-        return ("fuel", "trap") if self._engine.fuel < 0 else ("stack", "trap")
 
 
 def _uncaught(error: GuestError) -> tuple[str, str, str]:

@@ -12,7 +12,7 @@ from beliefnest.worlds.scripted.wasm_machine import Machine
 
 _PAGE = 65536
 _LONGEST_TEXT = 4_000_000
-"""Bytes that are read of a text; above the limit of messages, which can thus be refused."""
+"""Most bytes read of a text: more than a message may have, so that longer ones are refused."""
 _USUAL_TEXT = 1000
 _GROWTH_LIMIT = 2**31
 _GROWTH_AHEAD = 100_663_296
@@ -45,8 +45,8 @@ class Interpreter:
         call: Called with the number of a host function and the address of its arguments; returns a
             value that the host no longer owns, or 0.
         interrupt: Returns True if running code is to stop. Polled now and then.
-        rejected: Called with a promise (64 bits) that was rejected without a handler, or that has
-            received one after that (True).
+        rejected: Called with a promise (64 bits) that was rejected: with False if it has no
+            handler, with True if it gets one later.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class Interpreter:
             },
         )
         self._letters = names.exports
-        # States hold the tracker's index: the first one that the table has to offer.
+        # States that are restored expect the tracker at the first free index of the table.
         self._machine.add_to_table(
             "table", lambda words: rejected(words[1].i64, words[3].i32 != 0), "illii"
         )
@@ -149,7 +149,7 @@ class Interpreter:
         return self.text(self._do("QTS_ArgvGetJSValueConstPointer", values, index))
 
     def keep(self, bits: int) -> int:
-        """Return a value that keeps alive what 64 bits stand for."""
+        """Return a new reference to the value that 64 bits stand for, so that it is not freed."""
         place = self._allocate(8)
         self._machine.write(place, (bits & 0xFFFF_FFFF_FFFF_FFFF).to_bytes(8, "little"))
         value = self._do("QTS_DupValuePointer", self._context, place)
@@ -198,7 +198,7 @@ class Interpreter:
         self.free(self._checked(value))
 
     def settled(self, promise: int) -> bool | None:
-        """Return True for a promise that was kept, False for a rejected one, None before that."""
+        """Return True for a fulfilled promise, False for a rejected one, None for a pending one."""
         state = self._do("QTS_PromiseState", self._context, promise)
         return None if state == _PENDING else state == _FULFILLED
 

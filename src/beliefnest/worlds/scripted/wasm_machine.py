@@ -56,7 +56,8 @@ class Machine:
         self._raised: BaseException | None = None
         self._memory = w.Memory(self._store, w.MemoryType(w.Limits(*pages)))
         given_imports = [
-            self._function(kind, imports.get(name, _nothing))
+            # Files and the system answer zero: programs need not have them.
+            self._function(kind, imports.get(name, lambda words: 0))
             if isinstance(kind, w.FuncType)
             else self._memory
             for name, kind in code.imports
@@ -202,8 +203,3 @@ class Machine:
             self._store._context(), kind.ptr(), called, None, no_finalizer, byref(made)
         )
         return w.Func._from_raw(made)
-
-
-def _nothing(words: Any) -> int:
-    """Answer for files and the system, which programs need not have: zero."""
-    return 0

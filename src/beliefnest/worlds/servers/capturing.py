@@ -193,7 +193,7 @@ def _said(snapshot: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
             containers[place] = {i: count for i, count in items.items() if registry.has_item(i)}
         elif items:
             others.add(name_at(place))
-    for place in snapshot.places(_container_states(names, registry)):
+    for place in snapshot.places([state for state in names if holds_items(registry, state)]):
         containers.setdefault(place, {})
     signs = {
         place: text
@@ -211,10 +211,6 @@ def _said(snapshot: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
         replace(snapshot, containers=dict(sorted(containers.items())), signs=signs, agents=agents),
         left_out,
     )
-
-
-def _container_states(names: dict[int, str], registry: Registry) -> list[int]:
-    return [state for state in names if holds_items(registry, state)]
 
 
 def _known(agent: AgentState, registry: Registry, strange: set[str]) -> AgentState:

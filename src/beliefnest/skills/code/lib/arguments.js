@@ -50,13 +50,13 @@ function distance ({ fail }, name, value) {
 /** Return true-or-false options, with `defaults` for those that are left out. @returns {object} */
 function flags ({ fail }, name, value, defaults) {
   const names = Object.keys(defaults)
-  const given = value !== null && typeof value === 'object' && !Array.isArray(value) ? Object.entries(value) : null
-  if (given === null || !given.every(([key, flag]) => names.includes(key) && typeof flag === 'boolean')) {
-    const wrong = given?.find(([key, flag]) => !names.includes(key) || typeof flag !== 'boolean')
-    const found = wrong ? `${show(wrong[0])}: ${show(wrong[1])}` : show(value)
-    fail(`${name} may have ${names.join(' and ')}, each true or false, like {${names[0]}: ${!defaults[names[0]]}}; it is ${found}`)
+  const entries = value !== null && typeof value === 'object' && !Array.isArray(value) ? Object.entries(value) : null
+  if (entries === null || !entries.every(([key, flag]) => names.includes(key) && typeof flag === 'boolean')) {
+    const wrong = entries?.find(([key, flag]) => !names.includes(key) || typeof flag !== 'boolean')
+    const shown = wrong ? `${show(wrong[0])}: ${show(wrong[1])}` : show(value)
+    fail(`${name} may have ${names.join(' and ')}, each true or false, like {${names[0]}: ${!defaults[names[0]]}}; it is ${shown}`)
   }
-  return { ...defaults, ...Object.fromEntries(given) }
+  return { ...defaults, ...Object.fromEntries(entries) }
 }
 
 function text ({ fail }, name, value) {
@@ -78,30 +78,30 @@ const entryOf = (table, name) => (typeof name === 'string' && Object.hasOwn(tabl
 
 /** Return minecraft-data's entry of an item. @returns {object} */
 function item ({ bot, fail }, name, value) {
-  const found = entryOf(bot.registry.itemsByName, value)
-  if (!found) {
+  const item = entryOf(bot.registry.itemsByName, value)
+  if (!item) {
     const hint = typeof value === 'string' ? similar(value, Object.keys(bot.registry.itemsByName)) : ''
     fail(`${name} must be the name of an item, like "diamond"; it is ${show(value)}${hint}`)
   }
-  return found
+  return item
 }
 
 /** Return minecraft-data's entry of a block. @returns {object} */
 function block ({ bot, fail }, name, value) {
-  const found = entryOf(bot.registry.blocksByName, value)
-  if (!found) {
+  const block = entryOf(bot.registry.blocksByName, value)
+  if (!block) {
     const hint = typeof value === 'string' ? similar(value, Object.keys(bot.registry.blocksByName)) : ''
     fail(`${name} must be the name of a block, like "stone"; it is ${show(value)}${hint}`)
   }
-  return found
+  return block
 }
 
 /** Return minecraft-data's entries of items, each with its count. @returns {[object, number][]} */
 function items (context, name, value) {
   const entries = value !== null && typeof value === 'object' && !Array.isArray(value) ? Object.entries(value) : []
   if (entries.length === 0) {
-    const found = value?.constructor === Object ? 'empty' : show(value)
-    context.fail(`${name} must say how many of which items, like {diamond: 1}; it is ${found}`)
+    const shown = value?.constructor === Object ? 'empty' : show(value)
+    context.fail(`${name} must say how many of which items, like {diamond: 1}; it is ${shown}`)
   }
   return entries.map(([key, number]) => [item(context, `each name in ${name}`, key), count(context, `${name}.${key}`, number)])
 }

@@ -22,13 +22,13 @@ function agentName ({ fail }, name, value) {
 
 function blockState ({ bot, fail }, name, value) {
   const [, block, properties] = (typeof value === 'string' && STATE.exec(value.replaceAll(' ', ''))) || []
-  const found = block !== undefined && Object.hasOwn(bot.registry.blocksByName, block) ? bot.registry.blocksByName[block] : undefined
-  if (!found) fail(`the block of ${name} must be a block, like "oak_door[open=true]"; it is ${show(value)}`)
+  const entry = block !== undefined && Object.hasOwn(bot.registry.blocksByName, block) ? bot.registry.blocksByName[block] : undefined
+  if (!entry) fail(`the block of ${name} must be a block, like "oak_door[open=true]"; it is ${show(value)}`)
   const chosen = properties ? properties.split(',').map(pair => pair.split('=')) : []
   for (const [key, word] of chosen) {
-    const known = found.states.find(state => state.name === key)
-    if (!known) fail(`${block} has no property ${key}; it has ${found.states.map(state => state.name).join(', ') || 'none'}`)
-    const words = valuesOf(known)
+    const property = entry.states.find(state => state.name === key)
+    if (!property) fail(`${block} has no property ${key}; it has ${entry.states.map(state => state.name).join(', ') || 'none'}`)
+    const words = valuesOf(property)
     if (!words.includes(word)) fail(`${key} of ${block} is one of ${words.join(', ')}; ${name} says ${word}`)
   }
   return chosen.length === 0 ? block : `${block}[${chosen.map(pair => pair.join('=')).sort().join(',')}]`

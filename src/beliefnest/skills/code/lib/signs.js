@@ -7,11 +7,11 @@ const { walkToUse } = require('./walking')
 
 /** Return the current state of the sign at a position; fail if there is no sign. @returns {object} */
 function signAt ({ bot, fail }, position) {
-  const found = bot.blockAt(position)
-  if (!found?.name.endsWith('_sign')) {
-    fail(`there is no sign at ${show(position)}, but ${nameOf(bot, found)}. Give the position of a sign.`)
+  const sign = bot.blockAt(position)
+  if (!sign?.name.endsWith('_sign')) {
+    fail(`there is no sign at ${show(position)}, but ${nameOf(bot, sign)}. Give the position of a sign.`)
   }
-  return found
+  return sign
 }
 
 /** Return the text on the front of a sign, without empty lines at the end. @returns {string} */

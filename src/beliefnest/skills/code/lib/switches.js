@@ -43,10 +43,10 @@ async function pressButton (context, position) {
 /** Go to a door, trapdoor or gate and open or shut it; do nothing if it is in that state already. */
 async function useDoor (context, position, open) {
   const { bot, fail } = context
-  const known = bot.blockAt(position)
-  const name = known?.name ?? 'door'
+  const door = bot.blockAt(position)
+  const name = door?.name ?? 'door'
   if (name.startsWith('iron_') && DOOR.is(name)) {
-    if (known.getProperties().open === open) return
+    if (door.getProperties().open === open) return
     fail(`the ${name} at ${show(position)} is not moved by hand. Use the lever, button or plate that powers it.`)
   }
   const block = await goTo(context, position, DOOR)
@@ -60,11 +60,11 @@ async function useDoor (context, position, open) {
 async function goTo (context, position, { called, is }) {
   const { bot, fail } = context
   const block = () => {
-    const found = bot.blockAt(position)
-    if (found === null || !is(found.name)) {
-      fail(`there is no ${called} at ${show(position)}, but ${nameOf(bot, found)}. Give the position of a ${called}.`)
+    const block = bot.blockAt(position)
+    if (block === null || !is(block.name)) {
+      fail(`there is no ${called} at ${show(position)}, but ${nameOf(bot, block)}. Give the position of a ${called}.`)
     }
-    return found
+    return block
   }
   if (!isUnseen(bot, position)) block()
   await walkToUse(context, position, `the ${called}`)

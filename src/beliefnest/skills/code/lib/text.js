@@ -6,7 +6,7 @@ const SIGN_LINES = 4
 const SIGN_LINE = 45
 // C0 and C1 control characters (line breaks and ESC among them), the separators U+2028 and U+2029, and the marks that
 // change the direction of the text around them; as `fault_of` in world/texts.py.
-const CONTROLS = /[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/ // eslint-disable-line no-control-regex -- these are what is looked for
+const CONTROLS = /[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/
 
 /**
  * Return what is wrong with an utterance, as the end of a sentence.
@@ -16,10 +16,10 @@ const CONTROLS = /[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u20
  */
 function flawOf (text, longest = LONGEST) {
   if (text.length > longest) return `must have at most ${longest} characters; it has ${text.length}. Say it in parts`
-  const found = CONTROLS.exec(text)
-  if (found === null) return null
-  const code = found[0].charCodeAt(0).toString(16).toUpperCase().padStart(4, '0')
-  return `must be one line without control characters; character ${found.index + 1} is U+${code}. Say lines one after the other`
+  const match = CONTROLS.exec(text)
+  if (match === null) return null
+  const code = match[0].charCodeAt(0).toString(16).toUpperCase().padStart(4, '0')
+  return `must be one line without control characters; character ${match.index + 1} is U+${code}. Say lines one after the other`
 }
 
 /**

@@ -11,7 +11,7 @@ module.exports = [
     files: ['**/*.js'],
     languageOptions: { ecmaVersion: 2024, sourceType: 'script', globals: Object.fromEntries(BROWSER.map(name => [name, 'readonly'])) },
     linterOptions: { reportUnusedDisableDirectives: 'error' },
-    rules: { ...rules, 'id-denylist': ['error', 'found', 'told', 'held', 'known', 'given'] }
+    rules
   },
   {
     files: ['eslint.config.js'],

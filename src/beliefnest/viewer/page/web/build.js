@@ -29,14 +29,14 @@ async function build (outdir) {
 
 /** Return version and licence, by name, of the packages whose code is in the program. @returns {object} */
 function packagesOf (metafile) {
-  const found = {}
+  const packages = {}
   for (const input of Object.keys(metafile.inputs)) {
     const [, name] = /node_modules\/((?:@[^/]+\/)?[^/]+)\//.exec(input) ?? []
     if (name === undefined) continue
     const manifest = JSON.parse(fs.readFileSync(path.join(HERE, 'node_modules', name, 'package.json')))
-    found[name] = { version: manifest.version, license: manifest.license }
+    packages[name] = { version: manifest.version, license: manifest.license }
   }
-  return found
+  return packages
 }
 
 build(path.resolve(process.argv[2] ?? DEFAULT_OUTDIR)).catch(error => {

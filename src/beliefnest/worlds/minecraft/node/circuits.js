@@ -14,7 +14,7 @@ function buildCircuits (version) {
   const states = registry.blocksArray.flatMap(({ minStateId, maxStateId }) =>
     Array.from({ length: maxStateId - minStateId + 1 }, (_, index) => describe(minStateId + index)))
   const that = (holds) => states.filter(holds).map(({ stateId }) => stateId)
-  const by = (value) => states.map((block) => [block.stateId, value(block)]).filter(([, found]) => found !== null)
+  const by = (value) => states.map((block) => [block.stateId, value(block)]).filter(([, number]) => number !== null)
   return {
     format: FORMAT,
     minecraft: version,

@@ -46,6 +46,7 @@ const rules = {
   'use-isnan': 'error',
   'valid-typeof': 'error',
   // Rules of this project.
+  'id-denylist': ['error', 'found', 'told', 'held', 'known', 'given'],
   'eqeqeq': ['error', 'always', { null: 'ignore' }],
   'max-lines': ['error', { max: 500 }],
   'max-lines-per-function': ['error', { max: 60, skipComments: true, skipBlankLines: true }],

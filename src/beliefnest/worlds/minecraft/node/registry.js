@@ -40,11 +40,11 @@ class ShapeTable {
 /** Return the shape numbers of a block: one for all states, or one for each state. */
 function blockShapes (block, collision, table) {
   const states = block.maxStateId - block.minStateId + 1
-  const given = [collision.blocks[block.name]].flat()
-  if (given.length !== 1 && given.length !== states) {
-    throw new Error(`${block.name} has ${states} states and ${given.length} collision shapes`)
+  const shapes = [collision.blocks[block.name]].flat()
+  if (shapes.length !== 1 && shapes.length !== states) {
+    throw new Error(`${block.name} has ${states} states and ${shapes.length} collision shapes`)
   }
-  const numbers = given.map((shape) => table.numberOf(collision.shapes[shape]))
+  const numbers = shapes.map((shape) => table.numberOf(collision.shapes[shape]))
   return new Set(numbers).size === 1 ? numbers.slice(0, 1) : numbers
 }
 

@@ -100,8 +100,8 @@ export class App {
   beside (run, timeline, { beside }) {
     if (beside === 'none') return null
     const [first, second] = beside.split(' ')
-    const found = second === undefined ? timeline.track(first) : run.timelines[first]?.track(second)
-    return found ?? timeline.track(timeline.facts.path) ?? null
+    const track = second === undefined ? timeline.track(first) : run.timelines[first]?.track(second)
+    return track ?? timeline.track(timeline.facts.path) ?? null
   }
 
   get dark () {

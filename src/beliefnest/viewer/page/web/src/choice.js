@@ -6,19 +6,19 @@ export const DEFAULTS = { run: 0, on: 0, at: '/', beside: '/', tick: null, thing
 
 /** Return the selection that an address's hash encodes. @returns {object} */
 export function readHash (hash, first = {}) {
-  const told = Object.fromEntries(new URLSearchParams(hash.replace(/^#/, '')))
+  const values = Object.fromEntries(new URLSearchParams(hash.replace(/^#/, '')))
   const choice = { ...DEFAULTS, ...first }
   for (const name of Object.keys(DEFAULTS)) {
-    if (told[name] === undefined) continue
-    if (!NUMBERS.has(name)) choice[name] = told[name]
-    else if (/^\d+$/.test(told[name])) choice[name] = Number(told[name])
+    if (values[name] === undefined) continue
+    if (!NUMBERS.has(name)) choice[name] = values[name]
+    else if (/^\d+$/.test(values[name])) choice[name] = Number(values[name])
   }
   return choice
 }
 
 export function hashOf (choice) {
-  const told = Object.entries(choice).filter(([name, value]) => value !== null && value !== DEFAULTS[name])
-  return '#' + told.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll('%2F', '/')}`).join('&')
+  const entries = Object.entries(choice).filter(([name, value]) => value !== null && value !== DEFAULTS[name])
+  return '#' + entries.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll('%2F', '/')}`).join('&')
 }
 
 /** Selection, its listeners, and the address that keeps it. */

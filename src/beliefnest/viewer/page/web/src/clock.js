@@ -152,8 +152,8 @@ function pathName (kind, path, before = '') {
 }
 
 function claimLine (said, kind, verdict) {
-  const told = verdictWords(verdict)
-  return element('span', { class: 'claim' }, `claims: ${said}`, kind ? element('strong', { class: 'mark false' }, ` ${kind}`) : null, told ? ` · ${told}` : null)
+  const verdictText = verdictWords(verdict)
+  return element('span', { class: 'claim' }, `claims: ${said}`, kind ? element('strong', { class: 'mark false' }, ` ${kind}`) : null, verdictText ? ` · ${verdictText}` : null)
 }
 
 /**

@@ -24,19 +24,19 @@ export class Detail {
     const own = track.path === track.timeline.facts.path
     const mode = own ? `control mode, branch “${track.timeline.facts.branch}”` : `follow mode, on ${track.timeline.name}`
     this.about.textContent = `${track.path} · ${mode} · tick ${tick}`
-    const held = document.activeElement?.dataset?.row
+    const focusedRow = document.activeElement?.dataset?.row
     refill(this.holds,
       table('Containers', things.containers.map(each => this.row(run, each, contentsText(each.contents), choice))),
       table('Signs', things.signs.map(each => this.row(run, each, signText(each), choice))),
       table('Agents', things.agents.map(each => this.row(run, each, placeText(each.pose), choice))),
       this.others(run, things))
-    if (held !== undefined) this.holds.querySelector(`[data-row="${CSS.escape(held)}"]`)?.focus()
+    if (focusedRow !== undefined) this.holds.querySelector(`[data-row="${CSS.escape(focusedRow)}"]`)?.focus()
     this.drawChosen(scene)
   }
 
   row (run, each, value, choice) {
     const name = each.look?.name ?? each.name
-    const marks = each.marks.map(mark => element('span', { class: `mark ${mark}`, 'data-mark': mark }, `${run.head.marks[mark].sign} ${markWords(run, mark, each.age, each.held)}`))
+    const marks = each.marks.map(mark => element('span', { class: `mark ${mark}`, 'data-mark': mark }, `${run.head.marks[mark].sign} ${markWords(run, mark, each.age, each.belief)}`))
     return element('button', {
       type: 'button',
       class: `thing${choice.thing === each.thing ? ' chosen' : ''}`,
@@ -47,10 +47,10 @@ export class Detail {
   }
 
   others (run, things) {
-    const told = []
-    if (things.wrongBlocks.length) told.push(things.wrongBlocks.length === 1 ? '1 block is false' : `${things.wrongBlocks.length} blocks are false`)
-    for (const each of things.agents) if (each.wrongItems) told.push(`what ${each.look.name} has is false`)
-    return told.length ? element('p', { class: 'mark false' }, `${run.head.marks.false.sign} ${told.join('; ')}.`) : null
+    const faults = []
+    if (things.wrongBlocks.length) faults.push(things.wrongBlocks.length === 1 ? '1 block is false' : `${things.wrongBlocks.length} blocks are false`)
+    for (const each of things.agents) if (each.wrongItems) faults.push(`what ${each.look.name} has is false`)
+    return faults.length ? element('p', { class: 'mark false' }, `${run.head.marks.false.sign} ${faults.join('; ')}.`) : null
   }
 
   drawChosen (scene) {
@@ -82,18 +82,18 @@ export class Detail {
 
   async explain ({ run, track, tick }, thing, why) {
     const asked = this.asked = {}
-    let told
+    let reasons
     try {
-      told = await this.source.explain(run, track, tick, thing.replace('inventory', 'agent'))
+      reasons = await this.source.explain(run, track, tick, thing.replace('inventory', 'agent'))
     } catch (error) {
-      told = { error: `The server does not answer (${error.message}).` }
+      reasons = { error: `The server does not answer (${error.message}).` }
     }
     if (asked !== this.asked) return
-    if (told === null) refill(why, ...groundParts(run, track, tick, thing))
-    else if (told.error) refill(why, element('p', {}, told.error))
+    if (reasons === null) refill(why, ...groundParts(run, track, tick, thing))
+    else if (reasons.error) refill(why, element('p', {}, reasons.error))
     else {
-      const lines = told.lines.map(line => element('p', {}, line))
-      if (told.t !== tick) lines.push(element('p', { class: 'hint' }, `This explanation is for tick ${told.t}.`))
+      const lines = reasons.lines.map(line => element('p', {}, line))
+      if (reasons.t !== tick) lines.push(element('p', { class: 'hint' }, `This explanation is for tick ${reasons.t}.`))
       refill(why, ...lines)
     }
   }
@@ -143,13 +143,13 @@ function blockText ({ text, says }) {
  */
 function groundParts (run, track, tick, thing) {
   const { kind, number } = partsOf(thing)
-  const held = kind === 'container' ? track.contents(number, tick) : kind === 'agent' ? track.agent(number, tick) : null
+  const belief = kind === 'container' ? track.contents(number, tick) : kind === 'agent' ? track.agent(number, tick) : null
   const parts = []
-  if (held !== null) {
-    const event = held.event ? ` (${held.event.replaceAll('_', ' ')})` : ''
-    const teller = tellerOf(held)
-    const source = teller !== null ? `${teller} said so` : held.source === 'prior' ? 'a prior belief' : `${held.source}${event}`
-    parts.push(element('p', {}, held.current ? 'It is perceived at this tick.' : `It rests on tick ${held.seenAt}: ${source}.`))
+  if (belief !== null) {
+    const event = belief.event ? ` (${belief.event.replaceAll('_', ' ')})` : ''
+    const teller = tellerOf(belief)
+    const source = teller !== null ? `${teller} said so` : belief.source === 'prior' ? 'a prior belief' : `${belief.source}${event}`
+    parts.push(element('p', {}, belief.current ? 'It is perceived at this tick.' : `It rests on tick ${belief.seenAt}: ${source}.`))
   }
   parts.push(element('p', { class: 'hint' }, 'Run “beliefnest serve RUN” to see the whole chain of perceptions.'))
   return parts

@@ -93,16 +93,16 @@ class Editor {
   show (edits = [], remember = true) {
     this.turn = this.turn.then(async () => {
       const before = this.text
-      const told = await asked('scene', { text: before, edits, viewer: this.viewer })
-      if (told.refused !== undefined) return this.tell(told.refused)
-      if (told.text !== undefined && told.text !== before) {
+      const scene = await asked('scene', { text: before, edits, viewer: this.viewer })
+      if (scene.refused !== undefined) return this.tell(scene.refused)
+      if (scene.text !== undefined && scene.text !== before) {
         if (remember) this.done.push(before)
         this.undone.length = 0
-        this.text = told.text
+        this.text = scene.text
       }
       if (this.source.value !== this.text) this.source.value = this.text
-      this.tell(told.problem ?? '')
-      if (told.scene !== undefined) this.take(told.scene)
+      this.tell(scene.problem ?? '')
+      if (scene.scene !== undefined) this.take(scene.scene)
       this.drawButtons()
     }).catch(error => this.tell(`The server does not answer (${error.message}).`))
     return this.turn
@@ -179,11 +179,11 @@ class Editor {
   /** Return in words what is under the cursor. @returns {string} */
   here () {
     const cell = this.run.cell(this.at)
-    const found = this.things.agents.filter(({ pose }) => pose !== null && this.run.cell([pose.x, pose.y + 0.01, pose.z]) === cell).map(({ look }) => look.name)
-    found.push(...(this.run.head.places ?? []).filter(([x, y, z]) => this.run.cell([x, y, z]) === cell).map(each => each[3]))
+    const names = this.things.agents.filter(({ pose }) => pose !== null && this.run.cell([pose.x, pose.y + 0.01, pose.z]) === cell).map(({ look }) => look.name)
+    names.push(...(this.run.head.places ?? []).filter(([x, y, z]) => this.run.cell([x, y, z]) === cell).map(each => each[3]))
     const block = this.run.states[this.track.grid(0)[cell]]
-    if (!block.air || found.length === 0) found.push(this.run.label(this.at) ?? block.name.replaceAll('_', ' '))
-    return found.join(', ')
+    if (!block.air || names.length === 0) names.push(this.run.label(this.at) ?? block.name.replaceAll('_', ' '))
+    return names.join(', ')
   }
 
   pressed (event) {
@@ -220,34 +220,34 @@ class Editor {
 
   /** Return what a tool places, as in the legend of a map; null if a field is missing. */
   thing (tool) {
-    const told = {}
-    for (const [name, value] of new FormData(this.fields)) if (value !== '') told[name] = value
-    if (tool === 'wall') return told.block ?? null
+    const fields = {}
+    for (const [name, value] of new FormData(this.fields)) if (value !== '') fields[name] = value
+    if (tool === 'wall') return fields.block ?? null
     const [first] = Object.keys(TOOLS[tool].fields)
-    if (told[first] === undefined) {
+    if (fields[first] === undefined) {
       this.tell(`Fill in the ${FIELD_WORDS[first]} of the ${TOOLS[tool].words} first.`)
       this.fields.elements[first].focus()
       return null
     }
-    if (told.items !== undefined) told.items = itemsOf(told.items)
-    if (told.open !== undefined) told.open = true
-    return told
+    if (fields.items !== undefined) fields.items = itemsOf(fields.items)
+    if (fields.open !== undefined) fields.open = true
+    return fields
   }
 
   drawTools () {
-    const held = this.tools.contains(document.activeElement)
+    const hadFocus = this.tools.contains(document.activeElement)
     refill(this.tools, ...Object.entries(TOOLS).map(([name, { words, key }]) => element('button', {
       type: 'button', role: 'radio', 'aria-checked': String(name === this.tool), tabindex: name === this.tool ? '0' : '-1', 'data-tool': name, title: `${words} (${key})`, onclick: () => this.choose(name), onkeydown: event => this.nextTool(event)
     }, words)))
-    if (held) this.tools.querySelector('[aria-checked=true]').focus()
+    if (hadFocus) this.tools.querySelector('[aria-checked=true]').focus()
     const lists = ['block', 'container', 'door'].includes(Object.keys(TOOLS[this.tool].fields)[0]) ? [this.names()] : []
     refill(this.fields, ...Object.entries(TOOLS[this.tool].fields).map(([name, value]) => this.field(name, value)), ...lists)
   }
 
   names () {
     const { blocks } = this.begun
-    const told = this.tool === 'door' ? blocks.filter(name => name.endsWith('_door')).map(name => name.slice(0, -5)) : blocks
-    return element('datalist', { id: 'names' }, ...told.map(name => element('option', { value: name })))
+    const names = this.tool === 'door' ? blocks.filter(name => name.endsWith('_door')).map(name => name.slice(0, -5)) : blocks
+    return element('datalist', { id: 'names' }, ...names.map(name => element('option', { value: name })))
   }
 
   field (name, value) {
@@ -317,10 +317,10 @@ class Editor {
     if (this.source.value !== this.text) this.text = this.source.value
     const text = this.text
     try {
-      const told = await asked('save', { text })
-      if (told.problem !== undefined) return this.tell(told.problem)
+      const outcome = await asked('save', { text })
+      if (outcome.problem !== undefined) return this.tell(outcome.problem)
       this.saved = text
-      this.tell(`${told.saved} is saved.`)
+      this.tell(`${outcome.saved} is saved.`)
     } catch (error) {
       this.tell(`The server does not answer (${error.message}).`)
     }

@@ -14,7 +14,7 @@ function filled (made, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue
     if (name.startsWith('on')) made.addEventListener(name.slice(2), value)
-    else if (name === 'style') for (const [rule, told] of Object.entries(value)) made.style.setProperty(rule, told)
+    else if (name === 'style') for (const [rule, setting] of Object.entries(value)) made.style.setProperty(rule, setting)
     else made.setAttribute(name, value === true ? '' : value)
   }
   made.append(...present(children))

@@ -137,8 +137,8 @@ export class Plan {
     return things.containers.filter(each => isOn(run, each, storey) && (each.contents || each.marks.length)).map(each => {
       const [x, y, s] = this.squareAt(each.place)
       const name = named ? run.label(each.place) : null
-      const held = [contentsLabel(each.contents), signsText(run, each.marks, each.age)].filter(Boolean).join(' ')
-      const text = name === null ? held : `${name}: ${held}`
+      const contentText = [contentsLabel(each.contents), signsText(run, each.marks, each.age)].filter(Boolean).join(' ')
+      const text = name === null ? contentText : `${name}: ${contentText}`
       const words = `${each.name}: ${contentsText(each.contents)}${each.marks.length ? ` (${each.marks.join(', ')})` : ''}`
       const wrong = each.marks.includes('false')
       return this.target(each.thing, words, chosen,

@@ -11,8 +11,8 @@ const root = document.getElementById('page')
 async function begin () {
   const { served, content } = await packedData(document.getElementById('data'))
   const runs = []
-  const updates = content.updates ?? content.runs.map((told, number) => [number, told])
-  for (const [number, told] of updates) take(runs, number, told)
+  const updates = content.updates ?? content.runs.map((update, number) => [number, update])
+  for (const [number, update] of updates) take(runs, number, update)
   if (served) forgetToken()
   if (runs.length === 0) await waiting(runs, content)
   const chooser = new Chooser(firstView(runs, content.first))
@@ -24,12 +24,12 @@ async function begin () {
   if (served) follow(app, runs, source, content)
 }
 
-function take (runs, number, told) {
+function take (runs, number, update) {
   if (runs[number] === undefined) {
     runs[number] = new Run()
     runs[number].number = number
   }
-  runs[number].put(told)
+  runs[number].put(update)
 }
 
 /**

@@ -30,8 +30,8 @@ export function partToShow (run, shown, before) {
     const along = points.map(point => point[axis])
     const first = Math.floor((Math.min(...along) - EDGE) / STEP) * STEP
     const end = Math.ceil((Math.max(...along) + 1 + EDGE) / STEP) * STEP
-    const known = before === null ? [first, end] : [Math.min(first, before.low[axis]), Math.max(end, before.low[axis] + before.size[axis])]
-    return [Math.max(0, known[0]), Math.min(side, known[1])]
+    const range = before === null ? [first, end] : [Math.min(first, before.low[axis]), Math.max(end, before.low[axis] + before.size[axis])]
+    return [Math.max(0, range[0]), Math.min(side, range[1])]
   })
   return { low: spans.map(([first]) => first), size: spans.map(([first, end]) => end - first) }
 }

@@ -19,7 +19,7 @@ export class Posterior {
   draw ({ run, timeline, tick }) {
     if (this.run !== run.number) {
       this.run = run.number
-      this.views = run.head.inferences.map((told, number) => new PosteriorView(told, number === 0, this.choose))
+      this.views = run.head.inferences.map((inference, number) => new PosteriorView(inference, number === 0, this.choose))
       refill(this.element, element('h2', {}, 'Inferred'), ...this.views.map(view => view.element))
     }
     this.element.hidden = this.views.length === 0 || timeline.number !== 0
@@ -29,35 +29,35 @@ export class Posterior {
 
 /** One posterior; the plan is tinted by the first one of a run. */
 class PosteriorView {
-  constructor (told, isTinted, choose) {
-    Object.assign(this, { told, isTinted, choose })
+  constructor (inference, isTinted, choose) {
+    Object.assign(this, { inference, isTinted, choose })
     this.about = element('p', { class: 'about' })
     this.panels = element('div', {})
     this.changes = element('ul', { class: 'changes', 'aria-label': 'what changed at this tick', 'aria-live': 'polite' })
-    this.element = element('div', {}, ...told.title ? [element('p', { class: 'title' }, element('strong', {}, told.title))] : [], this.about, this.changes, this.panels)
+    this.element = element('div', {}, ...inference.title ? [element('p', { class: 'title' }, element('strong', {}, inference.title))] : [], this.about, this.changes, this.panels)
     this.shown = null
   }
 
   draw (tick) {
     if (tick === this.shown) return
     this.shown = tick
-    const { told } = this
-    const number = latest(told.ticks, tick)
-    refill(this.about, `Goals and beliefs of ${told.agent}, inferred from what happened up to tick ${tick}.${this.isTinted ? ` The tint on the plan shows where ${told.agent} will be after ${told.steps} ${told.steps === 1 ? 'action' : 'actions'}.` : ''}`)
-    refill(this.changes, ...told.changes.filter(([t]) => t === tick).map(([, text, factors]) => element('li', {},
-      `${told.agent} ${text}: `, element('strong', {}, factors.length ? factors.slice(0, 4).map(([name, bits]) => `${name} ${bits.toFixed(2)} bits`).join(', ') : 'changes nothing'))))
-    refill(this.panels, ...told.panels.map(panel => this.panel(told, panel, number, tick)))
+    const { inference } = this
+    const number = latest(inference.ticks, tick)
+    refill(this.about, `Goals and beliefs of ${inference.agent}, inferred from what happened up to tick ${tick}.${this.isTinted ? ` The tint on the plan shows where ${inference.agent} will be after ${inference.steps} ${inference.steps === 1 ? 'action' : 'actions'}.` : ''}`)
+    refill(this.changes, ...inference.changes.filter(([t]) => t === tick).map(([, text, factors]) => element('li', {},
+      `${inference.agent} ${text}: `, element('strong', {}, factors.length ? factors.slice(0, 4).map(([name, bits]) => `${name} ${bits.toFixed(2)} bits`).join(', ') : 'changes nothing'))))
+    refill(this.panels, ...inference.panels.map(panel => this.panel(inference, panel, number, tick)))
   }
 
-  panel (told, panel, number, tick) {
-    const [first, last] = [told.ticks[0], told.ticks.at(-1) + 1]
+  panel (inference, panel, number, tick) {
+    const [first, last] = [inference.ticks[0], inference.ticks.at(-1) + 1]
     const x = t => WIDTH * (t - first) / (last - first)
     const y = value => HIGH * (panel.high - value) / (panel.high - panel.low)
     const pick = event => {
       const box = chart.getBoundingClientRect()
       this.choose({ tick: Math.min(last - 1, first + Math.floor((event.clientX - box.left) / box.width * (last - first))) })
     }
-    const shapes = panel.stacked ? areas(told, panel, last, x, y) : curves(told, panel, last, x, y)
+    const shapes = panel.stacked ? areas(inference, panel, last, x, y) : curves(inference, panel, last, x, y)
     const now = x(Math.max(first, Math.min(last - 1, tick)) + 0.5)
     const chart = svg('svg', { viewBox: `0 0 ${WIDTH} ${HIGH}`, preserveAspectRatio: 'none', role: 'img', 'aria-label': `${panel.title}, over time`, onclick: pick },
       ...shapes, svg('line', { class: 'now', x1: now, x2: now, y1: 0, y2: HIGH }))
@@ -104,11 +104,11 @@ function latest (ticks, tick) {
 
 /** Return squares on a plan, tinted by the root of the probability that the agent will be there. */
 export function heatOf ({ run, timeline, tick }, at, size) {
-  const told = timeline.number === 0 ? run.head.inferences[0] : null
-  const rows = told ? told.heats[latest(told.heats.map(([t]) => t), tick)]?.[1] ?? [] : []
+  const inference = timeline.number === 0 ? run.head.inferences[0] : null
+  const rows = inference ? inference.heats[latest(inference.heats.map(([t]) => t), tick)]?.[1] ?? [] : []
   return rows.map(([x, z, share]) => {
     const [left, top] = at(x, z)
     return svg('rect', { class: 'heat', x: left, y: top, width: size, height: size, style: { fill: HEAT, 'fill-opacity': 0.75 * Math.sqrt(share) } },
-      svg('title', {}, `${told.agent} will be here after ${told.steps}: ${Math.round(100 * share)} %`))
+      svg('title', {}, `${inference.agent} will be here after ${inference.steps}: ${Math.round(100 * share)} %`))
   })
 }

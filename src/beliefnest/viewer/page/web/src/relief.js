@@ -53,14 +53,14 @@ function levelsOf (run, grid, layer, part) {
       let level = layer
       for (let cell = first + layer * depth; level >= 0 && grid[cell] >= 0 && air[grid[cell]]; cell -= depth) level--
       // Below what is unknown a lower block may be known, such as the ground below a roof's height.
-      levels[i * rows + k] = level >= 0 ? known(grid, air, first + level * depth, depth, level) : -1
+      levels[i * rows + k] = level >= 0 ? levelOf(grid, air, first + level * depth, depth, level) : -1
     }
   }
   return levels
 }
 
 /** Return the highest layer of a column with a known block other than air; if there is none, the given layer. */
-function known (grid, air, first, depth, layer) {
+function levelOf (grid, air, first, depth, layer) {
   for (let level = layer, cell = first; level >= 0; level--, cell -= depth) if (grid[cell] >= 0 && !air[grid[cell]]) return level
   return layer
 }

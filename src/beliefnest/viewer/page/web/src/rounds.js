@@ -25,12 +25,12 @@ export class Rounds {
     const version = JSON.stringify([run.number, line.number, now, choice.note, branch.parts.length, last?.agents, branch.goal, run.timelines.length])
     if (version === this.shown) return
     this.shown = version
-    const held = document.activeElement?.dataset?.round
+    const focusedRound = document.activeElement?.dataset?.round
     this.drawAbout(run, branch, line)
     refill(this.goal, ...branch.goal.map(([text, never, when]) => this.condition(line, { text: never ? `not to be: ${text}` : text, never, when, open: isOpen(run, branch) })))
     const turns = branch.parts.some((part, number) => number > 0 && part.round === branch.parts[number - 1].round)
     refill(this.list, ...branch.parts.map((part, number) => this.part(run, line, part, { isNow: number === now, turns, choice })))
-    if (held !== undefined) this.list.querySelector(`[data-round="${CSS.escape(held)}"]`)?.focus()
+    if (focusedRound !== undefined) this.list.querySelector(`[data-round="${CSS.escape(focusedRound)}"]`)?.focus()
     else if (this.at !== null && this.at !== now) this.show(this.list.children[now])
     this.at = now
   }

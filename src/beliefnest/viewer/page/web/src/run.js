@@ -80,13 +80,13 @@ class Track {
     this.cursor = null
   }
 
-  put (told) {
-    for (const [name, rows] of Object.entries(told)) {
+  put (update) {
+    for (const [name, rows] of Object.entries(update)) {
       if (name === 'grid') this.beginning = rows
       else put(this.lists[name] ??= [], rows)
     }
-    if (told.heard !== undefined) this.heard = new Set(this.lists.heard)
-    if (told.grid !== undefined || told.blocks?.[0] < this.cursor?.done) this.cursor = null
+    if (update.heard !== undefined) this.heard = new Set(this.lists.heard)
+    if (update.grid !== undefined || update.blocks?.[0] < this.cursor?.done) this.cursor = null
   }
 
   list (name) {
@@ -196,11 +196,11 @@ class Timeline {
     this.tracks = new Map()
   }
 
-  put (told) {
-    if (told.facts !== undefined) this.facts = told.facts
-    if (told.events !== undefined) put(this.events, told.events)
-    for (const [number, columns] of Object.entries(told.poses ?? {})) (this.stands[number] ??= new Stand()).put(columns)
-    for (const [path, rows] of Object.entries(told.tracks ?? {})) {
+  put (update) {
+    if (update.facts !== undefined) this.facts = update.facts
+    if (update.events !== undefined) put(this.events, update.events)
+    for (const [number, columns] of Object.entries(update.poses ?? {})) (this.stands[number] ??= new Stand()).put(columns)
+    for (const [path, rows] of Object.entries(update.tracks ?? {})) {
       if (!this.tracks.has(path)) this.tracks.set(path, new Track(this, path))
       this.tracks.get(path).put(rows)
     }
@@ -264,14 +264,14 @@ export class Run {
     if (this.shownTracks.length > MOST_GRIDS) this.shownTracks.shift().cursor = null
   }
 
-  put (told) {
-    if (told.head !== undefined) this.head = told.head
-    for (const name of ['states', 'programs', 'prompts']) if (told[name] !== undefined) put(this[name], told[name])
-    for (const [number, rows] of Object.entries(told.timelines ?? {})) {
+  put (update) {
+    if (update.head !== undefined) this.head = update.head
+    for (const name of ['states', 'programs', 'prompts']) if (update[name] !== undefined) put(this[name], update[name])
+    for (const [number, rows] of Object.entries(update.timelines ?? {})) {
       (this.timelines[number] ??= new Timeline(this, Number(number))).put(rows)
     }
-    if (told.ahead !== undefined) this.ahead = told.ahead
-    if (told.episode !== undefined) this.episode = told.episode
+    if (update.ahead !== undefined) this.ahead = update.ahead
+    if (update.episode !== undefined) this.episode = update.episode
   }
 
   get cells () {

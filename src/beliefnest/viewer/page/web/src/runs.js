@@ -32,9 +32,9 @@ class Numbers {
 /** Return the numbers of a text. @returns {number[]} */
 export function numbersOf (text) {
   const numbers = new Numbers(text)
-  const found = []
-  while (!numbers.isAtEnd) found.push(numbers.next())
-  return found
+  const values = []
+  while (!numbers.isAtEnd) values.push(numbers.next())
+  return values
 }
 
 /**
@@ -48,9 +48,9 @@ export function putRuns (grid, text, first) {
   let cell = 0
   while (!numbers.isAtEnd) {
     cell += numbers.next()
-    const told = numbers.next()
-    const end = cell + (told >> 1)
-    if (told % 2 === 0) grid.set(first.subarray(cell, end), cell)
+    const pair = numbers.next()
+    const end = cell + (pair >> 1)
+    if (pair % 2 === 0) grid.set(first.subarray(cell, end), cell)
     else {
       const mark = numbers.next() + 1
       grid.fill(mark === UNKNOWN ? -1 : mark - FIRST_STATE, cell, end)

@@ -38,12 +38,12 @@ export class ServedSource {
 
   constructor (again) {
     this.again = again
-    this.known = new Map()
+    this.answers = new Map()
   }
 
   /** Forget all answers, so that the page asks again; called when a run has grown. */
   forget () {
-    this.known.clear()
+    this.answers.clear()
   }
 
   async explain (run, track, tick, thing) {
@@ -59,20 +59,20 @@ export class ServedSource {
   }
 
   async deepen (run, timeline, path) {
-    const told = await this.ask('deepen', { run: run.number, on: timeline.number, path })
-    return told.error ?? null
+    const outcome = await this.ask('deepen', { run: run.number, on: timeline.number, path })
+    return outcome.error ?? null
   }
 
   later (what, query) {
     const name = addressOf(what, query)
-    if (!this.known.has(name)) {
-      this.known.set(name, null)
-      this.ask(what, query).then(told => {
-        this.known.set(name, told.answer ?? null)
+    if (!this.answers.has(name)) {
+      this.answers.set(name, null)
+      this.ask(what, query).then(outcome => {
+        this.answers.set(name, outcome.answer ?? null)
         this.again()
-      }, () => this.known.delete(name))
+      }, () => this.answers.delete(name))
     }
-    return this.known.get(name)
+    return this.answers.get(name)
   }
 
   async ask (what, query) {

@@ -300,8 +300,8 @@ export class Space {
     if (each.contents === null && scene.track.grid(scene.tick)[each.cell] < 0) this.outline(each.place, 0x8a8890)
     const sign = signsText(scene.run, each.marks, each.age)
     const named = scene.run.label(each.place)
-    const held = [contentsLabel(each.contents), sign].filter(Boolean).join(' ')
-    this.label(each.thing, [x + 0.5, y + 1.35, z + 0.5], named === null ? held : `${named}: ${held}`, wrong)
+    const contentText = [contentsLabel(each.contents), sign].filter(Boolean).join(' ')
+    this.label(each.thing, [x + 0.5, y + 1.35, z + 0.5], named === null ? contentText : `${named}: ${contentText}`, wrong)
   }
 
   /** Show the name of a place; names are no buttons, because nobody believes anything about them. */

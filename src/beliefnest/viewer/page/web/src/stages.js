@@ -62,8 +62,8 @@ export class Stages {
     const { beside, run, track } = scene
     const two = beside !== null && beside !== track
     const second = two ? besideScene(scene) : null
-    const known = this.aimed === run ? this.part : null
-    this.part = partToShow(run, [scene.things, ...(two ? [second.things] : [])], known)
+    const part = this.aimed === run ? this.part : null
+    this.part = partToShow(run, [scene.things, ...(two ? [second.things] : [])], part)
     this.aim(scene)
     this.stages[0].draw({ ...scene, part: this.part }, view)
     this.stages[1].element.hidden = !two
@@ -76,12 +76,12 @@ export class Stages {
     const version = [run.number, view, choice.sees, storey, choice.beside, track.path, timeline.number, options.length].join('|')
     if (version === this.shown) return
     this.shown = version
-    const held = document.activeElement?.dataset?.view
+    const focusedView = document.activeElement?.dataset?.view
     refill(this.views, ...Object.entries(VIEWS).map(([name, words], number) => element('button', {
       type: 'button', 'data-view': name, 'aria-pressed': String(view === name), disabled: name !== 'plan' && !this.webgl,
       title: this.webgl ? `${words} (${number + 1})` : 'this browser has no WebGL', onclick: () => this.choose({ view: name })
     }, words)))
-    if (held) this.views.querySelector(`[data-view="${held}"]`)?.focus()
+    if (focusedView) this.views.querySelector(`[data-view="${focusedView}"]`)?.focus()
     const chosen = beside === null ? 'none' : beside.timeline === timeline ? beside.path : `${beside.timeline.number} ${beside.path}`
     fillOptions(this.other, [['none', 'nothing'], ...options], chosen)
     fillOptions(this.sees, [['', 'nobody'], ...run.head.agents.map(({ name }) => [name, name])], choice.sees ?? '')

@@ -165,7 +165,7 @@ class Faces {
  * @returns {{solid: Faces, liquid: Faces}}
  */
 export function facesOf (blocks, number, colourOf) {
-  const found = { solid: new Faces(), liquid: new Faces() }
+  const byKind = { solid: new Faces(), liquid: new Faces() }
   const [from, to] = cornersOf(blocks, number)
   const { merged } = blocks.kinds
   for (const axis of [0, 1, 2]) {
@@ -182,7 +182,7 @@ export function facesOf (blocks, number, colourOf) {
           corner[u] = from[u] + along
           corner[v] = from[v] + up
           const isLiquid = merged[state] === LIQUID
-          const faces = isLiquid ? found.liquid : found.solid
+          const faces = isLiquid ? byKind.liquid : byKind.solid
           // Transparent faces have no outset: overlaps would be darker.
           const outset = isLiquid ? 0 : blocks.outset
           faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0, normalOf(axis, side)), unseen, outset)
@@ -190,7 +190,7 @@ export function facesOf (blocks, number, colourOf) {
       }
     }
   }
-  return found
+  return byKind
 }
 
 /**
@@ -256,7 +256,7 @@ export function boxesOf (blocks, number, colourOf) {
   const { grid, shape: [width, height, depth], top, kinds, seen } = blocks
   const [from, to] = cornersOf(blocks, number)
   const [strides, limits] = [[height * depth, depth, 1], [width, top, depth]]
-  const found = { solid: new Faces(), clear: new Faces() }
+  const byKind = { solid: new Faces(), clear: new Faces() }
   for (let i = from[0]; i < to[0]; i++) {
     for (let j = 0; j < top; j++) {
       for (let k = from[2]; k < to[2]; k++) {
@@ -267,7 +267,7 @@ export function boxesOf (blocks, number, colourOf) {
         const isSeen = seen === null || seen[cell] === 1
         const isDark = isSeen && (i + k) % 2 === 0
         const isSolid = kinds.boxed[state] === SOLID
-        const faces = isSolid ? found.solid : found.clear
+        const faces = isSolid ? byKind.solid : byKind.clear
         for (const box of kinds.boxes[state]) {
           for (const axis of [0, 1, 2]) {
             for (const side of [0, 1]) {
@@ -288,5 +288,5 @@ export function boxesOf (blocks, number, colourOf) {
       }
     }
   }
-  return found
+  return byKind
 }

@@ -9,10 +9,10 @@ const FLAT = 3
 /** Return agents, containers, dropped items, written signs and false blocks of a track at a tick. @returns {object} */
 export function thingsOf (run, track, tick) {
   const wrong = new Set(track.wrong(tick))
-  const known = new Set([...track.cells(), ...(run.timelines[0]?.track('/')?.cells() ?? [])])
+  const cells = new Set([...track.cells(), ...(run.timelines[0]?.track('/')?.cells() ?? [])])
   return {
     agents: run.head.agents.map((look, number) => agentThing(run, track, tick, look, number, wrong)),
-    containers: [...known].sort((a, b) => a - b).map(cell => containerThing(run, track, tick, cell, wrong)),
+    containers: [...cells].sort((a, b) => a - b).map(cell => containerThing(run, track, tick, cell, wrong)),
     items: [...track.items(tick).values()],
     signs: writtenSigns(run, track, tick, wrong),
     wrong,
@@ -23,14 +23,14 @@ export function thingsOf (run, track, tick) {
 /** Return the signs that are known to bear a text. */
 function writtenSigns (run, track, tick, wrong) {
   if (!run.states.some(state => state.says !== undefined)) return []
-  const found = []
+  const signs = []
   track.grid(tick).forEach((state, cell) => {
     if (state < 0 || run.states[state].says === undefined) return
     const thing = `block-${cell}`
     const { name, says, claims = [] } = run.states[state]
-    found.push({ thing, cell, place: run.place(cell), name: `${name.replaceAll('_', ' ')} at ${run.place(cell).join(', ')}`, says, claims, marks: wrong.has(thing) ? ['false'] : [], age: null })
+    signs.push({ thing, cell, place: run.place(cell), name: `${name.replaceAll('_', ' ')} at ${run.place(cell).join(', ')}`, says, claims, marks: wrong.has(thing) ? ['false'] : [], age: null })
   })
-  return found
+  return signs
 }
 
 /** Return all that is known of a sign: its text, and what it claims. @returns {string} */
@@ -50,7 +50,7 @@ function agentThing (run, track, tick, look, number, wrong) {
   if (wrong.has(thing)) marks.push('false')
   if (pose === null) marks.push('unknown')
   else if (!pose.current) marks.push(memoryMark(pose))
-  return { thing, number, teller: tellerOf(pose), held: pose, look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`inventory-${number}`) }
+  return { thing, number, teller: tellerOf(pose), belief: pose, look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`inventory-${number}`) }
 }
 
 function containerThing (run, track, tick, cell, wrong) {
@@ -62,32 +62,32 @@ function containerThing (run, track, tick, cell, wrong) {
   else if (!contents.complete) marks.push('incomplete')
   if (contents !== null && !contents.current && !marks.includes('unknown')) marks.push(memoryMark(contents))
   const age = contents === null ? null : tick - contents.seenAt
-  return { thing, cell, place: run.place(cell), name: run.thingName(thing), contents, held: contents, marks, age, teller: tellerOf(contents) }
+  return { thing, cell, place: run.place(cell), name: run.thingName(thing), contents, belief: contents, marks, age, teller: tellerOf(contents) }
 }
 
 /**
  * Return the speaker of a claim, or `a sign`, that is the only ground for a belief; null if there are other grounds.
  * @returns {string|null}
  */
-export function tellerOf (held) {
-  return held !== null && !held.current && held.source === 'heard' ? held.speaker ?? 'a sign' : null
+export function tellerOf (belief) {
+  return belief !== null && !belief.current && belief.source === 'heard' ? belief.speaker ?? 'a sign' : null
 }
 
-function memoryMark (held) {
-  return tellerOf(held) === null ? 'stale' : 'heard'
+function memoryMark (belief) {
+  return tellerOf(belief) === null ? 'stale' : 'heard'
 }
 
 /**
  * Return the source and age of a memory in words. Nothing is called seen that was not perceived.
- * @param {object} held The entry, with its `source`, and with its `speaker` if it is hearsay.
+ * @param {object} belief The entry, with its `source`, and with its `speaker` if it is hearsay.
  * @param {number} age Its age in ticks.
  * @returns {string}
  */
-export function memoryWords (held, age) {
-  const teller = tellerOf(held)
+export function memoryWords (belief, age) {
+  const teller = tellerOf(belief)
   if (teller !== null) return `told by ${teller}${age > 0 ? ` ${ago(age)}` : ''}`
-  if (held.source === 'prior') return 'believed from the start'
-  return `${held.source === 'edited' ? 'edited' : 'seen'} ${ago(age)}`
+  if (belief.source === 'prior') return 'believed from the start'
+  return `${belief.source === 'edited' ? 'edited' : 'seen'} ${ago(age)}`
 }
 
 /** Return the believed contents of a container in a few words. @returns {string} */
@@ -110,10 +110,10 @@ export function signsText (run, marks, age) {
 }
 
 /** Return a mark in words, with its age. @returns {string} */
-export function markWords (run, mark, age, held = null) {
-  if (mark === 'heard') return memoryWords(held, age)
+export function markWords (run, mark, age, belief = null) {
+  if (mark === 'heard') return memoryWords(belief, age)
   if (mark === 'stale' && age !== null) {
-    return held?.source === 'prior' ? memoryWords(held, age) : `remembered, ${memoryWords(held, age)}`
+    return belief?.source === 'prior' ? memoryWords(belief, age) : `remembered, ${memoryWords(belief, age)}`
   }
   return run.head.marks[mark].words
 }

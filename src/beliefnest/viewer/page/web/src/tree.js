@@ -23,9 +23,9 @@ export class Tree {
     const version = [run.number, choice.on, choice.at, marks, [...this.open].join(), run.timelines.map(line => line.facts.selected)].join('|')
     if (version === this.shown) return
     this.shown = version
-    const held = document.activeElement?.dataset?.node
+    const focusedNode = document.activeElement?.dataset?.node
     refill(this.list, ...run.timelines.map(line => this.timeline(run, line, choice, tick)))
-    if (held !== undefined) this.list.querySelector(`[data-node="${CSS.escape(held)}"]`)?.focus()
+    if (focusedNode !== undefined) this.list.querySelector(`[data-node="${CSS.escape(focusedNode)}"]`)?.focus()
   }
 
   timeline (run, line, choice, tick) {

@@ -17,7 +17,7 @@ const YEAR_PLACE = 5
  */
 async function interpreterNames () {
   const memory = new WebAssembly.Memory({ initial: PAGES })
-  let given
+  let importsOfGlue
   const letters = new Map()
   const standIn = new Proxy({}, {
     get (_, letter) {
@@ -33,28 +33,28 @@ async function interpreterNames () {
     print: () => {},
     printErr: () => {},
     instantiateWasm: (imports, done) => {
-      [given] = Object.values(imports)
+      [importsOfGlue] = Object.values(imports)
       done({ exports: standIn })
       return standIn
     }
   })
   const named = Object.entries(glue).filter(([name, value]) => name.startsWith('_') && letters.has(value))
   const exports = Object.fromEntries(named.map(([name, value]) => [name.slice(1), letters.get(value)]))
-  return { exports, imports: importNames(glue, given, memory) }
+  return { exports, imports: importNames(glue, importsOfGlue, memory) }
 }
 
 /** Call each import, and look what it does. */
-function importNames (glue, given, memory) {
-  const found = {}
+function importNames (glue, imports, memory) {
+  const letters = {}
   let letter
   const note = name => () => {
-    found[name] = letter
+    letters[name] = letter
     return 0
   }
   glue.callbacks = { callFunction: note('call'), shouldInterrupt: note('interrupt') }
   memory.grow = note('grow')
   const words = new Int32Array(memory.buffer)
-  for (const [name, act] of Object.entries(given)) {
+  for (const [name, act] of Object.entries(imports)) {
     if (typeof act !== 'function') continue
     letter = name
     words.fill(0)
@@ -63,12 +63,12 @@ function importNames (glue, given, memory) {
     } catch {
       // Those that end the process throw.
     }
-    if (words[YEAR_PLACE] === YEAR) found.time = name
+    if (words[YEAR_PLACE] === YEAR) letters.time = name
   }
   for (const name of ['call', 'interrupt', 'grow', 'time']) {
-    if (found[name] === undefined) throw new Error(`this build of QuickJS has no import that does what bundling/interpreter.js calls ${name}`)
+    if (letters[name] === undefined) throw new Error(`this build of QuickJS has no import that does what bundling/interpreter.js calls ${name}`)
   }
-  return found
+  return letters
 }
 
 module.exports = { interpreterNames }

@@ -150,12 +150,12 @@ function memoise (build) {
   for (const name of MEMOISED) {
     const { main = 'index.js' } = require(`${name}/package.json`)
     const file = path.posix.join(name, main).replaceAll('.', '\\.')
-    build.onLoad({ filter: new RegExp(`node_modules/${file}$`) }, ({ path: found }) => {
+    build.onLoad({ filter: new RegExp(`node_modules/${file}$`) }, ({ path: original }) => {
       missing.delete(name)
       return {
-        contents: `${fs.readFileSync(found, 'utf8')}\nmodule.exports = require(${memoiser}).memoised(module.exports)`,
+        contents: `${fs.readFileSync(original, 'utf8')}\nmodule.exports = require(${memoiser}).memoised(module.exports)`,
         loader: 'js',
-        resolveDir: path.dirname(found)
+        resolveDir: path.dirname(original)
       }
     })
   }

@@ -29,12 +29,12 @@ function rememberBlocks (registry) {
 function maker (registry) {
   const Block = require('prismarine-block')(registry)
   const copy = copier(Block)
-  const known = new Map()
+  const blocksByState = new Map()
   return stateId => {
-    let block = known.get(stateId)
+    let block = blocksByState.get(stateId)
     if (block === undefined) {
       block = Block.fromStateId(stateId, 0)
-      known.set(stateId, block)
+      blocksByState.set(stateId, block)
     }
     return copy(block)
   }
@@ -119,13 +119,13 @@ function rememberColumns (World) {
     ground: null,
     getLoadedColumn (x, z) {
       this.lately ??= [nothing(), nothing(), nothing(), nothing()]
-      const known = this.lately[(x & 1) << 1 | (z & 1)]
-      if (known.x !== x || known.z !== z || known.column === undefined) {
-        known.column = getLoadedColumn.call(this, x, z) ?? this.begun(x, z)
-        known.x = x
-        known.z = z
+      const slot = this.lately[(x & 1) << 1 | (z & 1)]
+      if (slot.x !== x || slot.z !== z || slot.column === undefined) {
+        slot.column = getLoadedColumn.call(this, x, z) ?? this.begun(x, z)
+        slot.x = x
+        slot.z = z
       }
-      return known.column
+      return slot.column
     },
     /** Return a column that was never set; undefined if there is none. */
     begun (x, z) {

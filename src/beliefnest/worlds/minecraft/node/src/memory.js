@@ -26,14 +26,14 @@ class Memory {
    * finished.
    */
   note (name, args) {
-    const given = JSON.stringify(plain(args))
-    let known = this.past.shift() ?? null
-    if (known !== null && (known.name !== name || known.given !== given)) {
+    const argumentText = JSON.stringify(plain(args))
+    let past = this.past.shift() ?? null
+    if (past !== null && (past.name !== name || past.given !== argumentText)) {
       // From here on the program takes another course.
       this.past = []
-      known = null
+      past = null
     }
-    const entry = { name, given, answer: known?.answer ?? null, before: known?.ticks ?? 0, begun: this.now(), since: known?.since ?? this.now() }
+    const entry = { name, 'given': argumentText, answer: past?.answer ?? null, before: past?.ticks ?? 0, begun: this.now(), since: past?.since ?? this.now() }
     this.entries.push(entry)
     return entry
   }
@@ -76,8 +76,8 @@ class Memory {
   /** Return CALLED, in order; empty if there are too many calls to continue from. @returns {object[]} */
   get calls () {
     if (this.entries.length > MOST) return []
-    return this.entries.map(({ name, given, answer, before, begun, since }) =>
-      ({ name, given, answer, ticks: answer === null ? before + this.now() - begun : 0, since }))
+    return this.entries.map(({ name, given: argumentText, answer, before, begun, since }) =>
+      ({ name, 'given': argumentText, answer, ticks: answer === null ? before + this.now() - begun : 0, since }))
   }
 }
 

@@ -63,7 +63,7 @@ class Runner {
 
   viewOf (region, { bot }, percepts) {
     const states = Terrain.read(percepts.states, region.box)
-    return new View({ bot, clock: this.regions.clock, box: region.box, names: region.known, percepts: { ...percepts, states } })
+    return new View({ bot, clock: this.regions.clock, box: region.box, names: region.agentNames, percepts: { ...percepts, states } })
   }
 
   start (region, agent, { bot, view, rules }, code) {
@@ -138,9 +138,9 @@ class Runner {
   async look (region, runs, changed) {
     const limited = runs.filter(({ view, result, crash }) => view !== null && (result ?? crash) === null)
     if (limited.length === 0) return true
-    const told = changed ? await this.perceive(region.tick) : {}
-    if (told === null) return false
-    for (const { agent, view } of limited) region.runAs(agent, () => view.update(told[agent] ?? null))
+    const percepts = changed ? await this.perceive(region.tick) : {}
+    if (percepts === null) return false
+    for (const { agent, view } of limited) region.runAs(agent, () => view.update(percepts[agent] ?? null))
     return true
   }
 

@@ -10,10 +10,10 @@ const { afterEach, beforeEach, test } = require('node:test')
 let answers = {}
 const asked = []
 async function answer (url, { body = '' } = {}) {
-  const found = Object.keys(answers).find(part => String(url).includes(part))
+  const part = Object.keys(answers).find(part => String(url).includes(part))
   asked.push({ url: String(url), body: String(body) })
-  if (found === undefined) throw new Error(`nobody answers ${url}`)
-  const text = JSON.stringify(answers[found])
+  if (part === undefined) throw new Error(`nobody answers ${url}`)
+  const text = JSON.stringify(answers[part])
   return { ok: true, status: 200, statusText: 'OK', headers: new Map(), text: async () => text, json: async () => JSON.parse(text) }
 }
 globalThis.fetch = answer
@@ -51,14 +51,14 @@ afterEach(async () => {
   fs.rmSync(folder, { recursive: true })
 })
 
-const joining = told => connect({
-  port: server.socketServer.address().port, version: versions.minecraft, username: 'sally', origin: { x: 0, z: 0 }, login: withAccount(folder, 'sally', text => told.push(text))
+const joining = lines => connect({
+  port: server.socketServer.address().port, version: versions.minecraft, username: 'sally', origin: { x: 0, z: 0 }, login: withAccount(folder, 'sally', text => lines.push(text))
 })
 
 test('a player logs in with a code that the user is shown, once', async () => {
-  const told = []
+  const lines = []
   for (let time = 0; time < 2; time++) {
-    const client = joining(told)
+    const client = joining(lines)
     const [there] = await once(server, 'playerJoin')
     assert.equal(there.username, 'sally')
     assert.ok(there.socket !== null && asked.some(({ url }) => url.includes('hasJoined')))
@@ -66,7 +66,7 @@ test('a player logs in with a code that the user is shown, once', async () => {
     await once(client, 'end')
   }
   // At the second login the token is in the folder.
-  assert.deepEqual(told, ['log in as sally: open https://example.org/link and enter the code ABCD-EFGH'])
+  assert.deepEqual(lines, ['log in as sally: open https://example.org/link and enter the code ABCD-EFGH'])
   assert.ok(fs.readdirSync(folder).length > 0)
 })
 

@@ -42,8 +42,8 @@ async function inBox (width, blocks, from, body) {
     const walk = position => skills.sally.goToPosition(sally, position, 0)
     const go = async (position, end = walking => world.during(walking)) => {
       const start = await world.tick()
-      const told = await end(walk(position))
-      return { told, ticks: await world.tick() - start, nodes: searched.reduce((sum, nodes) => sum + nodes, last) }
+      const failure = await end(walk(position))
+      return { error: failure, ticks: await world.tick() - start, nodes: searched.reduce((sum, nodes) => sum + nodes, last) }
     }
     await body(go, world)
   })
@@ -73,8 +73,8 @@ test('a door between two halves of a wide box is gone through, and a door that l
 test('a place without a way is told after a bounded number of nodes, with doors near and without', async () => {
   for (const doors of [[], doorAt(-12, 3)]) {
     await inBox(320, house([...walledUp, ...doors]), [1.5, FLOOR, -6.5], async (go, world) => {
-      const { told, nodes } = await go(INSIDE, walking => failure(world, walking))
-      assert.match(told.message, /no way to it/)
+      const { error, nodes } = await go(INSIDE, walking => failure(world, walking))
+      assert.match(error.message, /no way to it/)
       assert.ok(nodes < MOST, String(nodes))
       assert.deepEqual(await world.events('use_door'), [])
     })

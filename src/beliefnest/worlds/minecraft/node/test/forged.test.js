@@ -44,7 +44,7 @@ describe('forged', () => {
   const events = (...kinds) => frames.flatMap(frame => frame.events).filter(({ kind }) => kinds.includes(kind))
 
   /** Return how many of each item the events of a kind report, by actor and other agent. */
-  function told (kind) {
+  function countsOf (kind) {
     const total = {}
     for (const { actor, detail } of events(kind)) {
       for (const [name, count] of Object.entries(detail.items)) {
@@ -65,7 +65,7 @@ describe('forged', () => {
       await Promise.all(waiting)` })
     assert.equal(ann.error, null)
     assert.deepEqual(events('give_item_to_other', 'receive_item_from_other'), [])
-    assert.deepEqual(told('get_item_from_chest'), { 'ann diamond': 1 })
+    assert.deepEqual(countsOf('get_item_from_chest'), { 'ann diamond': 1 })
   })
 
   test('gifts at the same time are counted once', async () => {
@@ -73,8 +73,8 @@ describe('forged', () => {
     await run({ ann: repeated(4, "giveItemToOther(bot, 'bob', 'dirt', 1)") })
     const { agents } = await snapshot()
     assert.ok(agents.bob.inventory.dirt > 0)
-    assert.deepEqual(told('give_item_to_other'), { 'ann bob dirt': agents.bob.inventory.dirt })
-    assert.deepEqual(told('receive_item_from_other'), { 'bob ann dirt': agents.bob.inventory.dirt })
+    assert.deepEqual(countsOf('give_item_to_other'), { 'ann bob dirt': agents.bob.inventory.dirt })
+    assert.deepEqual(countsOf('receive_item_from_other'), { 'bob ann dirt': agents.bob.inventory.dirt })
   })
 
   test('what was thrown in one call and is picked up in the next was given; what has long lain there was found', async () => {
@@ -88,7 +88,7 @@ describe('forged', () => {
       const [x, , z] = Object.values(state.items).find(({ name }) => name === wanted).position.map(Math.floor)
       await run({ bob: `await goToPosition(bot, ${at(x, z)}, 0); await waitTicks(bot, 60)` })
     }
-    assert.deepEqual(told('give_item_to_other'), { 'ann bob dirt': 1 })
+    assert.deepEqual(countsOf('give_item_to_other'), { 'ann bob dirt': 1 })
     assert.deepEqual((await snapshot()).agents.bob.inventory, { dirt: 1, stick: 1 })
   })
 
@@ -99,8 +99,8 @@ describe('forged', () => {
     await run({ ann: repeated(3, "craftItem(bot, 'oak_planks', null, 4)") })
     await run({ ann: `await smeltItem(bot, 'raw_iron', 'coal', ${at(2, 0)}, 2)` })
     const { agents: { ann: { inventory } } } = await snapshot()
-    assert.deepEqual(told('craft_item'), { 'ann oak_planks': inventory.oak_planks })
-    assert.deepEqual(told('smelt_item'), { 'ann iron_ingot': 2 })
+    assert.deepEqual(countsOf('craft_item'), { 'ann oak_planks': inventory.oak_planks })
+    assert.deepEqual(countsOf('smelt_item'), { 'ann iron_ingot': 2 })
     assert.equal(inventory.iron_ingot, 2)
   })
 
@@ -185,7 +185,7 @@ describe('forged', () => {
     region_.body('ann').bot.once('windowOpen', watching)
     const { ann } = await run({ ann: `const window = await bot.openChest(bot.blockAt(${at(3, 0)}))\nawait waitTicks(bot, 2)\nawait window.withdraw(mcData.itemsByName.diamond.id, null, 1).catch(() => {})` })
     assert.equal(ann.error, null)
-    assert.deepEqual(told('get_item_from_chest'), {})
+    assert.deepEqual(countsOf('get_item_from_chest'), {})
   })
 
   const FLAWED = {

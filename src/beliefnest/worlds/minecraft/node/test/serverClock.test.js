@@ -37,9 +37,9 @@ test('ticks never fall, whatever the server tells', () => {
 })
 
 test('an age of 0 at a login is no jump', () => {
-  const known = following([[0, 100], [1000, 5000], [1500, 0], [1510, 5012], [2500, 5032]])
-  assert.equal(known.at(-1), 5032)
-  assert.ok(rises(known))
+  const ages = following([[0, 100], [1000, 5000], [1500, 0], [1510, 5012], [2500, 5032]])
+  assert.equal(ages.at(-1), 5032)
+  assert.ok(rises(ages))
   assert.equal(following([[0, 5000], [500, 0], [510, 0], [520, 5012]]).at(-1), 5012)
   // A server that was set up anew stays at its low age.
   assert.ok(following([[0, 5000], [500, 3], [1500, 23], [2500, 43]]).at(-1) < 5100)
@@ -82,7 +82,7 @@ test('what the server says long after a stop is still the answer to an attempt b
   let now = 0
   const clock = new ServerClock(() => now)
   clock.tell(100)
-  const place = new RemotePlace({ name: '/', box: null, origin: { x: 0, z: 0 }, tick: 0, known: [] }, clock)
+  const place = new RemotePlace({ name: '/', box: null, origin: { x: 0, z: 0 }, tick: 0, agentNames: [] }, clock)
   const witness = new Witness('sally', place, { serv: { players: [] } }, null)
   const chest = new Vec3(1, 2, 3)
   witness.use({ location: chest })

@@ -50,12 +50,12 @@ function startBot (client, clock) {
  */
 function keepSecond (bot, client) {
   const { write } = client
-  let told = { time: 0 }
+  let lastLook = { time: 0 }
   client.write = (name, params) => {
-    if (name === 'position_look') told = params
+    if (name === 'position_look') lastLook = params
     return write.call(client, name, params)
   }
-  bot.beginSecond = () => { told.time = performance.now() }
+  bot.beginSecond = () => { lastLook.time = performance.now() }
 }
 
 /**

@@ -37,8 +37,8 @@ function chargePathfinder (bot, clock, unknownAt) {
   standard.allow1by1towers = false
   standard.scafoldingBlocks = []
   bot.pathfinder.setMovements = movements => {
-    const known = Object.hasOwn(movements, 'getNeighbors')
-    setMovements(known ? movements : charged(movements))
+    const isCharged = Object.hasOwn(movements, 'getNeighbors')
+    setMovements(isCharged ? movements : charged(movements))
   }
   const { thinkTimeout, tickTimeout, searchRadius } = bot.pathfinder
   bot.pathfinder.reset = () => {

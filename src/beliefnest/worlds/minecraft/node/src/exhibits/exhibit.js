@@ -10,7 +10,7 @@ const { keyOf } = require('../server/plugins/lib/positions')
 
 class Exhibit {
   /**
-   * @param {object} told EXHIBIT of the channel
+   * @param {object} description EXHIBIT of the channel
    */
   constructor ({ exhibit: name, origin: [x, z], stand, box: [low, high], blocks, containers, signs, agents }) {
     this.name = name

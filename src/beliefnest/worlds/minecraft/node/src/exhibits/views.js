@@ -62,18 +62,18 @@ function inside (exhibit, place, states, { Item, registry }) {
   const { name } = states.describe(exhibit.at(place))
   if (slotsIn(name) === 0) return null
   const halves = halvesAt(each => states.describe(exhibit.at(each)), place)
-  const held = exhibit.containers.get(keyOf(halves[0])) ?? { items: {}, complete: false }
+  const content = exhibit.containers.get(keyOf(halves[0])) ?? { items: {}, complete: false }
   const { type, title } = windowOf(name, halves.length)
-  const stacks = stacksOf(Item, registry, held.items)
+  const stacks = stacksOf(Item, registry, content.items)
   const slots = Array.from({ length: halves.length * HALF }, (_, slot) => stacks[slot] ?? null)
-  return { type, title: `${title}${known(held)}`, items: [...slots, ...new Array(OWN_SLOTS).fill(null)].map(stack => Item.toNotch(stack)) }
+  return { type, title: `${title}${completeness(content)}`, items: [...slots, ...new Array(OWN_SLOTS).fill(null)].map(stack => Item.toNotch(stack)) }
 }
 
 /**
  * Return the suffix of a window's title that says which contents are unknown: an empty window would mean that the
  * container is empty.
  */
-function known ({ items, complete }) {
+function completeness ({ items, complete }) {
   if (complete) return ''
   return Object.keys(items).length === 0 ? ' (contents unknown)' : ' (known in part)'
 }

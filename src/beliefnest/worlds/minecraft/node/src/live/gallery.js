@@ -37,9 +37,9 @@ class Gallery {
     return [...this.exhibits.values()].map(({ name, stand: { x, y, z } }) => `${name}: /tp ${x} ${y} ${z}`).join(', ')
   }
 
-  open (told) {
-    if (this.exhibits.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already; close it first`)
-    this.exhibits.set(told.exhibit, new Exhibit(told))
+  open (description) {
+    if (this.exhibits.has(description.exhibit)) throw new BadRequest(`${description.exhibit} is shown already; close it first`)
+    this.exhibits.set(description.exhibit, new Exhibit(description))
   }
 
   /**

@@ -106,26 +106,26 @@ class Visitor {
   use (location, sequence) {
     this.setRight(location, sequence)
     const place = this.exhibit.toOwn(location)
-    const found = inside(this.exhibit, place, this.gallery.states, this.gallery.serv)
-    if (found === null) return
+    const inner = inside(this.exhibit, place, this.gallery.states, this.gallery.serv)
+    if (inner === null) return
     this.lastWindow = (this.lastWindow % LAST_WINDOW) + 1
     this.window = { id: this.lastWindow, place }
-    const title = this.gallery.serv._createNetworkEncodedChatComponent(found.title)
-    this.end.write('open_window', { windowId: this.window.id, inventoryType: found.type, windowTitle: title })
+    const title = this.gallery.serv._createNetworkEncodedChatComponent(inner.title)
+    this.end.write('open_window', { windowId: this.window.id, inventoryType: inner.type, windowTitle: title })
     this.fill()
   }
 
   /** Send the contents of the open window; items that the visitor moved go back. */
   fill () {
     if (this.window === null) return
-    const found = inside(this.exhibit, this.window.place, this.gallery.states, this.gallery.serv)
-    if (found === null) {
+    const inner = inside(this.exhibit, this.window.place, this.gallery.states, this.gallery.serv)
+    if (inner === null) {
       this.end.write('close_window', { windowId: this.window.id })
       this.window = null
       return
     }
     this.stateId += 1
-    this.end.write('window_items', { windowId: this.window.id, stateId: this.stateId, items: found.items, carriedItem: NOTHING })
+    this.end.write('window_items', { windowId: this.window.id, stateId: this.stateId, items: inner.items, carriedItem: NOTHING })
   }
 
   /** Resend a block and the inventory after the visitor tried to change them. */

@@ -40,8 +40,8 @@ class KnownWorld {
     if (!this.box.contains(x, y, z)) return this.beyond.getBlock(new Vec3(x, y, z))
     const { states } = this
     const [place, index] = [states.place(x, y, z), states.within(x, y, z)]
-    const known = this.blocks[place]?.[index] ?? null
-    if (known !== null) return known
+    const block = this.blocks[place]?.[index] ?? null
+    if (block !== null) return block
     const state = states.chunks[states.rows[place]][index]
     if (state < 0) return null
     const blocks = (this.blocks[place] ??= new Array(states.volume).fill(null))

@@ -34,13 +34,13 @@ class View {
     this.forwarded = []
     this.collected = []
     this.waiting = []
-    this.known = new KnownWorld({ registry: bot.registry, box, states, beyond: bot.world })
+    this.knownWorld = new KnownWorld({ registry: bot.registry, box, states, beyond: bot.world })
     this.others = new Others(bot, names)
     this.bot = this.made()
-    this.walker = new Walker(this.bot, this.known, clock)
+    this.walker = new Walker(this.bot, this.knownWorld, clock)
     this.onCollect = (collector, collected) => this.collected.push({ name: collector.username, number: collected.id })
     bot.on('playerCollect', this.onCollect)
-    this.onSignOpen = ({ position }) => this.emitter.emit('signOpen', this.known.getBlock(position))
+    this.onSignOpen = ({ position }) => this.emitter.emit('signOpen', this.knownWorld.getBlock(position))
     bot.on('signOpen', this.onSignOpen)
     this.learn(changes)
     // Events before the program could listen: since the interruption, if the program is resumed.
@@ -49,9 +49,9 @@ class View {
 
   /** Return the bot object for the program. */
   made () {
-    const { body, known, others } = this
+    const { body, knownWorld, others } = this
     const view = Object.create(body, {
-      world: { value: known },
+      world: { value: knownWorld },
       entity: { get: () => others.self },
       entities: { get: () => others.entities },
       players: { get: () => others.players },
@@ -60,7 +60,7 @@ class View {
       pathfinder: { value: null, writable: true }
     })
     rayTrace(view)
-    return Object.assign(view, this.events(), looking(view, known), touching(body, others), { perceived: () => this.perceived() })
+    return Object.assign(view, this.events(), looking(view, knownWorld), touching(body, others), { perceived: () => this.perceived() })
   }
 
   events () {
@@ -116,9 +116,9 @@ class View {
   /** Apply changes. Return the events that announce them, each a name with values. @returns {Array[]} */
   learn ({ blocks = [], signs = null, agents = {}, items = {}, announced = [] }) {
     const events = []
-    if (signs !== null) this.known.readSigns(signs)
+    if (signs !== null) this.knownWorld.readSigns(signs)
     for (const [x, y, z, state] of blocks) {
-      const { before, after } = this.known.learn(x, y, z, state)
+      const { before, after } = this.knownWorld.learn(x, y, z, state)
       this.walker.learn(before, after)
       events.push(['blockUpdate', before, after], [`blockUpdate:(${x}, ${y}, ${z})`, before, after])
     }
@@ -141,24 +141,24 @@ class View {
 }
 
 /** Return the methods that look at the world. */
-function looking (view, known) {
+function looking (view, knownWorld) {
   const findBlocks = ({ matching, point, maxDistance = 16, count = 1 }) => {
     const types = [matching].flat()
     const matches = typeof matching === 'function' ? matching : block => types.includes(block.type)
-    return known.find(matches, (point ?? view.entity.position).floored(), maxDistance, count)
+    return knownWorld.find(matches, (point ?? view.entity.position).floored(), maxDistance, count)
   }
   return {
-    blockAt: place => known.getBlock(place),
+    blockAt: place => knownWorld.getBlock(place),
     findBlocks,
     findBlock: options => {
       const [place] = findBlocks({ ...options, count: 1 })
-      return place === undefined ? null : known.getBlock(place)
+      return place === undefined ? null : knownWorld.getBlock(place)
     },
     canSeeBlock: ({ position }) => {
       const eye = view.entity.position.offset(0, view.entity.eyeHeight, 0)
       const way = position.offset(0.5, 0.5, 0.5).minus(eye)
       const meets = (block, ray) => ray.intersect(block.shapes, block.position) !== null || block.position.equals(position)
-      return known.raycast(eye, way.normalize(), eye.distanceTo(position), meets)?.position.equals(position) ?? false
+      return knownWorld.raycast(eye, way.normalize(), eye.distanceTo(position), meets)?.position.equals(position) ?? false
     },
     nearestEntity: (matches = () => true) => {
       const far = ({ position }) => position.distanceTo(view.entity.position)

@@ -19,16 +19,16 @@ class Walker {
   /**
    * Add a pathfinder to the view of a bot.
    * @param {object} view see view.js
-   * @param {import('./knownWorld').KnownWorld} known
+   * @param {import('./knownWorld').KnownWorld} knownWorld
    * @param {import('../time/clock').Clock} clock
    */
-  constructor (view, known, clock) {
+  constructor (view, knownWorld, clock) {
     this.view = view
-    this.known = known
+    this.knownWorld = knownWorld
     this.felt = new Set()
     this.path = []
     this.level = null
-    this.floor = known.make(view.registry.blocksByName.stone.defaultState)
+    this.floor = knownWorld.make(view.registry.blocksByName.stone.defaultState)
     const walker = Object.create(view)
     walker.blockAt = place => this.trodden(place)
     walker.on = (event, listener) => view.on(event === 'blockUpdate' ? PLANNED : event, listener)
@@ -49,7 +49,7 @@ class Walker {
   /** Return the block that physics assumes when the pathfinder simulates steps in advance. */
   trodden (place) {
     const [x, y, z] = [Math.floor(place.x), Math.floor(place.y), Math.floor(place.z)]
-    if (!this.known.lacks(x, y, z)) return this.known.blockIn(x, y, z)
+    if (!this.knownWorld.lacks(x, y, z)) return this.knownWorld.blockIn(x, y, z)
     if (y >= this.ground) return null
     return Object.assign(Object.create(this.floor), { position: place.floored() })
   }
@@ -60,7 +60,7 @@ class Walker {
    */
   unknownAt (x, y, z, isBelow) {
     const isFelt = this.felt.size > 0 && this.felt.has([x, y, z].join())
-    if (!isFelt && !this.known.lacks(x, y, z)) return undefined
+    if (!isFelt && !this.knownWorld.lacks(x, y, z)) return undefined
     const position = this.view.entity.position.clone().set(x, y, z)
     return {
       position,

@@ -39,9 +39,9 @@ function readPlace (bytes, cut) {
   if (root.Materials !== undefined) throw new BadRequest('it is a schematic from before Minecraft 1.13, with numbers instead of block names; save it again as .schem')
   if (root.Regions !== undefined) throw new BadRequest('it is a schematic of Litematica (.litematic); convert it to .schem with Lite2Edit, or export it as a vanilla structure (.nbt) in the schematic manager of Litematica')
   const place = Array.isArray(root.size) ? structure(root, cut) : sponge(root, cut)
-  const found = { containers: [], signs: [], special: [] }
-  for (const { position, entity } of place.entities) readEntity(found, position, entity)
-  return { shape: place.shape, palette: place.palette, blocks: place.blocks, ...found }
+  const content = { containers: [], signs: [], special: [] }
+  for (const { position, entity } of place.entities) readEntity(content, position, entity)
+  return { shape: place.shape, palette: place.palette, blocks: place.blocks, ...content }
 }
 
 const isCompound = value => typeof value === 'object' && value !== null && !Array.isArray(value) && !ArrayBuffer.isView(value)

@@ -35,14 +35,14 @@ function totals (stacks) {
 /**
  * Return the inventory and equipment of a player.
  * @param {object} data data of the entity: `Inventory`, since 1.21.5 also `equipment`
- * @param {number} held selected slot of the hotbar
+ * @param {number} selectedSlot selected slot of the hotbar
  * @returns {{inventory: object, equipment: object}}
  */
-function possessionsIn ({ Inventory: own = [], equipment: worn = {} }, held) {
+function possessionsIn ({ Inventory: own = [], equipment: worn = {} }, selectedSlot) {
   const stacks = stacksIn(own)
   const equipment = {}
   for (const { name, slot } of stacks) {
-    if (slot === held) equipment.main_hand = name
+    if (slot === selectedSlot) equipment.main_hand = name
     if (slot === OFF_HAND_SLOT) equipment.off_hand = name
     if (ARMOUR[slot - FIRST_ARMOUR] !== undefined) equipment[ARMOUR[slot - FIRST_ARMOUR]] = name
   }

@@ -59,9 +59,9 @@ class Reader {
 
   nested (read) {
     if (++this.depth > DEEPEST) throw new RangeError(`it is nested more than ${DEEPEST} deep`)
-    const found = read()
+    const value = read()
     this.depth -= 1
-    return found
+    return value
   }
 
   /** Return the elements of a list; `least` is the least number of bytes of one. */
@@ -75,12 +75,12 @@ class Reader {
 
   compound () {
     // Names come from the file: `__proto__` is one as any other.
-    const found = Object.create(null)
+    const entries = Object.create(null)
     for (let type = this.bytes.readUInt8(this.take(1)); type !== END; type = this.bytes.readUInt8(this.take(1))) {
       const name = this.text()
-      found[name] = this.value(type)
+      entries[name] = this.value(type)
     }
-    return found
+    return entries
   }
 }
 

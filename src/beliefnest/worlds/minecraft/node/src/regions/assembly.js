@@ -22,7 +22,7 @@ class Assembly {
     this.rows = new Int32Array(this.counts[0] * this.counts[1] * this.counts[2]).fill(MISSING)
     this.chunks = []
     // By hash, the numbers of the cubes that have it.
-    this.known = new Map()
+    this.chunksByHash = new Map()
     this.blank = blank
   }
 
@@ -36,10 +36,10 @@ class Assembly {
 
   /** Return the number of a cube among the different ones. */
   rowOf (states) {
-    const { chunks, known } = this
+    const { chunks, chunksByHash } = this
     const hash = hashOf(states)
-    if (!known.has(hash)) known.set(hash, [])
-    const alike = known.get(hash)
+    if (!chunksByHash.has(hash)) chunksByHash.set(hash, [])
+    const alike = chunksByHash.get(hash)
     let row = alike.find(each => chunks[each].every((state, index) => state === states[index]))
     if (row === undefined) {
       this.requireRoom(chunks.length)

@@ -157,9 +157,9 @@ class Bodies {
       save: region => inOrder([...region.bodies]).filter(([, { player }]) => !player.onGround)
         .map(([agent, { bot: { entity: { velocity: { x, y, z } } } }]) => [agent, x, y, z]),
       restore (rows, region) {
-        const told = new Map(rows.map(([agent, ...speed]) => [agent, speed]))
+        const speeds = new Map(rows.map(([agent, ...speed]) => [agent, speed]))
         for (const [agent, { bot, player }] of region.bodies) {
-          if (!player.onGround) bot.entity.velocity.set(...told.get(agent) ?? [0, 0, 0])
+          if (!player.onGround) bot.entity.velocity.set(...speeds.get(agent) ?? [0, 0, 0])
         }
       }
     })

@@ -32,19 +32,19 @@ class Claims {
     const where = kind === 'block_update' ? position.join() : undefined
     const index = kind !== 'chat' && kind !== 'block_update'
       ? -1
-      : this.waiting.findIndex(told => told.actor === actor && told.text === text && told.to === to && told.position === where)
+      : this.waiting.findIndex(claim => claim.actor === actor && claim.text === text && claim.to === to && claim.position === where)
     if (index < 0) return event
     const [{ claims }] = this.waiting.splice(index, 1)
     return { ...event, detail: { ...event.detail, claims } }
   }
 
   check ({ kind, place, agent }) {
-    const { box, known } = this.region
+    const { box, agentNames } = this.region
     if (!box.contains(...place.map(Math.floor))) {
       throw new Error(`the claim (${kind}) speaks of (${place.join(', ')}), which lies outside the box of this world`)
     }
-    if (agent !== undefined && !known.has(agent)) {
-      throw new Error(`the claim (${kind}) names "${agent}"; there are the agents ${[...known].join(', ')}`)
+    if (agent !== undefined && !agentNames.has(agent)) {
+      throw new Error(`the claim (${kind}) names "${agent}"; there are the agents ${[...agentNames].join(', ')}`)
     }
   }
 }

@@ -10,14 +10,14 @@ class Place {
    * @param {import('./box').Box} options.box
    * @param {{x: number, z: number}} options.origin server position of scenario (0, y, 0); multiples of 16
    * @param {number} options.tick last tick that has ended
-   * @param {string[]} options.known names of the agents that may be mentioned here
+   * @param {string[]} options.agentNames names of the agents that may be mentioned here
    */
-  constructor ({ name, box, origin, tick, known }) {
+  constructor ({ name, box, origin, tick, agentNames }) {
     this.name = name
     this.box = box
     this.origin = origin
     this.tick = tick
-    this.known = new Set(known)
+    this.agentNames = new Set(agentNames)
     // Errors that were thrown, with the agent in whose bot or connection, if known: {error, agent}.
     this.faults = []
     this.bodies = new Map()

@@ -15,7 +15,7 @@ class Recorder {
   constructor (region, facts) {
     this.region = region
     this.facts = facts
-    this.known = { agents: new Map(), items: new Map() }
+    this.reported = { agents: new Map(), items: new Map() }
     this.claims = new Claims(region)
     this.clear()
   }
@@ -97,16 +97,16 @@ class Recorder {
   }
 
   changes (part, present) {
-    const known = this.known[part]
+    const reported = this.reported[part]
     const changed = {}
     for (const [key, state] of Object.entries(present)) {
-      if (known.has(key) && equal(known.get(key), state)) continue
-      known.set(key, state)
+      if (reported.has(key) && equal(reported.get(key), state)) continue
+      reported.set(key, state)
       changed[key] = state
     }
-    for (const key of known.keys()) {
+    for (const key of reported.keys()) {
       if (key in present) continue
-      known.delete(key)
+      reported.delete(key)
       changed[key] = null
     }
     return changed

@@ -18,10 +18,10 @@ class Region extends Place {
    * @param {import('./box').Box} options.box
    * @param {{x: number, z: number}} options.origin origin from the allotment
    * @param {number} options.tick last tick that has ended
-   * @param {string[]} options.known names of the agents that may be mentioned here
+   * @param {string[]} options.agentNames names of the agents that may be mentioned here
    */
-  constructor ({ name, seed, box, origin, tick, known }) {
-    super({ name, box, origin, tick, known })
+  constructor ({ name, seed, box, origin, tick, agentNames }) {
+    super({ name, box, origin, tick, agentNames })
     this.seed = seed
     this.state = regionalState()
     this.columns = columnsOf(box, origin)

@@ -59,12 +59,12 @@ class Regions {
   }
 
   /** Create a region. Resolve when every bot stands in it. @returns {Promise<object>} SNAPSHOT of the new region */
-  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, internal_state: internalState, signs = [], known = Object.keys(agents) }) {
+  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, internal_state: internalState, signs = [], known: agentNames = Object.keys(agents) }) {
     if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
     const box = new Box(...corners)
     requireHeight(this.serv, box)
     const terrain = Terrain.read(blocks, box)
-    const region = new Region({ name, seed, box, origin: this.allotment.take(box), tick, known })
+    const region = new Region({ name, seed, box, origin: this.allotment.take(box), tick, agentNames })
     region.recorder = new Recorder(region, factsOf(this.serv, region))
     this.byName.set(name, region)
     try {

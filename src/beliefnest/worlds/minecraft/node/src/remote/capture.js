@@ -26,7 +26,7 @@ const SPECTATOR = 3
  *   names of players of whom only visible equipment is known, and `strange`: names of blocks that our version lacks
  */
 async function capture ({ operator, clock, theirs, registry }, origin, corners, cut) {
-  const region = new RemotePlace({ name: 'captured', box: new Box(...corners), origin, tick: 0, known: [] }, clock)
+  const region = new RemotePlace({ name: 'captured', box: new Box(...corners), origin, tick: 0, agentNames: [] }, clock)
   const mapping = new BlockMapping(registry, theirs)
   const commands = commandsFor(region, state => mapping.textForServer(state), theirs.version)
   const scene = new Scene(region, mapping, operator, commands, position => setup.read(position))
@@ -47,10 +47,10 @@ async function look (setup, commands, cut) {
   const { operator, scene, region } = setup
   const present = operator.readTerrain(region.box, cut, scene.mapping)
   scene.settle(present)
-  const found = await contents(setup, present)
+  const content = await contents(setup, present)
   await setup.goAbove()
   return {
-    tick: 0, blocks: present.message(), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region)
+    tick: 0, blocks: present.message(), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...content, ...await players(operator, commands, region)
   }
 }
 
@@ -65,12 +65,12 @@ async function contents (setup, terrain) {
 }
 
 function signs (bot, { states }, terrain) {
-  const found = []
+  const signs = []
   terrain.find(state => states.describe(state).name.endsWith('_sign'), (x, y, z) => {
     const text = textOf(bot.blockAt(vecOf({ x, y, z })))
-    if (text !== '') found.push([x, y, z, text])
+    if (text !== '') signs.push([x, y, z, text])
   })
-  return found.sort(byPlace)
+  return signs.sort(byPlace)
 }
 
 async function players (operator, commands, region) {
@@ -80,13 +80,13 @@ async function players (operator, commands, region) {
     if (!entity || gamemode === SPECTATOR || !region.box.contains(...listOf(entity.position.floored()))) continue
     const data = operator.can('data') ? await operator.ask(commands.dataOf(username)) : null
     if (data === null) unasked.push(username)
-    agents[username] = data === null ? { ...pose(entity), ...seen(entity) } : told(region, data)
+    agents[username] = data === null ? { ...pose(entity), ...seen(entity) } : savedState(region, data)
   }
   return { agents: sorted(agents), unasked }
 }
 
 /** Return an agent from the server's own data of it. */
-function told (region, data) {
+function savedState (region, data) {
   const [x, y, z] = data.Pos
   const { yaw, pitch } = fromDegrees(...data.Rotation)
   return {

@@ -23,7 +23,7 @@ function slotName (slot) {
 }
 
 /** Return a text in the game's own notation. */
-const quoted = text => `'${text.replace(/[\\']/g, found => `\\${found}`)}'`
+const quoted = text => `'${text.replace(/[\\']/g, mark => `\\${mark}`)}'`
 
 /**
  * Return the functions that build commands for a place.

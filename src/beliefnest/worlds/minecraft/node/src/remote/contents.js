@@ -6,16 +6,16 @@ const { sorted } = require('../regions/facts')
 
 class Contents {
   constructor () {
-    this.held = new Map()
+    this.byPlace = new Map()
     this.changed = new Map()
   }
 
   /** Set the contents of a container. */
   know (position, items) {
     const key = keyOf(position)
-    const before = this.held.get(key)
+    const before = this.byPlace.get(key)
     if (before !== undefined && JSON.stringify(sorted(before.items)) === JSON.stringify(sorted(items))) return
-    this.held.set(key, { position: vecOf(position), items })
+    this.byPlace.set(key, { position: vecOf(position), items })
     this.changed.set(key, vecOf(position))
   }
 
@@ -25,29 +25,29 @@ class Contents {
   }
 
   has (position) {
-    return this.held.has(keyOf(position))
+    return this.byPlace.has(keyOf(position))
   }
 
   /** Return the ITEMS of a known container. @returns {object} */
   get (position) {
-    return this.held.get(keyOf(position)).items
+    return this.byPlace.get(keyOf(position)).items
   }
 
   /** Forget the container at a position; it no longer exists. */
   forget (position) {
-    if (this.held.delete(keyOf(position))) this.changed.set(keyOf(position), vecOf(position))
+    if (this.byPlace.delete(keyOf(position))) this.changed.set(keyOf(position), vecOf(position))
   }
 
   /** Return [x, y, z, ITEMS] of all containers, in order. @returns {Array} */
   states () {
-    return [...this.held.values()].map(({ position, items }) => [...listOf(position), sorted(items)]).sort(byPlace)
+    return [...this.byPlace.values()].map(({ position, items }) => [...listOf(position), sorted(items)]).sort(byPlace)
   }
 
   /** Return [x, y, z, ITEMS or null] of the containers that changed since the last call. @returns {Array} */
   drain () {
     const rows = [...this.changed.entries()].map(([key, position]) => {
-      const held = this.held.get(key)
-      return [...listOf(position), held === undefined ? null : sorted(held.items)]
+      const content = this.byPlace.get(key)
+      return [...listOf(position), content === undefined ? null : sorted(content.items)]
     })
     this.changed.clear()
     return rows

@@ -10,26 +10,26 @@ class Items {
     this.region = region
     this.entities = () => ({})
     // By entity id on the server: {number, throws}.
-    this.known = new Map()
+    this.drops = new Map()
     this.awaited = []
     this.last = 0
   }
 
   /** Announce items that commands are about to summon, with their numbers. */
   await (items) {
-    this.known.clear()
+    this.drops.clear()
     this.awaited = Object.entries(items).map(([number, item]) => ({ number: Number(number), ...item }))
     this.last = Math.max(0, ...Object.keys(items).map(Number))
   }
 
   appeared (entity, thrown) {
     const stack = entity.getDroppedItem?.()
-    if (!stack || this.known.has(entity.id)) return
+    if (!stack || this.drops.has(entity.id)) return
     const index = this.awaited.findIndex(({ name, count }) => name === stack.name && count === stack.count)
     const number = index < 0 ? this.nextNumber() : this.awaited.splice(index, 1)[0].number
     const by = thrown.findIndex(({ name, count }) => name === stack.name && count === stack.count)
     const throws = by < 0 ? [] : thrown.splice(by, 1).map(({ agent, count, at }) => [agent, count, at])
-    this.known.set(entity.id, { number, throws })
+    this.drops.set(entity.id, { number, throws })
   }
 
   nextNumber () {
@@ -38,7 +38,7 @@ class Items {
   }
 
   gone (id) {
-    this.known.delete(id)
+    this.drops.delete(id)
   }
 
   stackOf (id) {
@@ -46,24 +46,24 @@ class Items {
   }
 
   throwsOf (id) {
-    return this.known.get(id)?.throws ?? []
+    return this.drops.get(id)?.throws ?? []
   }
 
   setThrows (id, throws) {
-    if (this.known.has(id)) this.known.get(id).throws = throws
+    if (this.drops.has(id)) this.drops.get(id).throws = throws
   }
 
   /** Return ITEM by number, for the items in the box. @returns {object} */
   states () {
-    const found = {}
-    for (const [id, { number }] of this.known) {
+    const stacks = {}
+    for (const [id, { number }] of this.drops) {
       const entity = this.entities()[id]
       const stack = this.stackOf(id)
       if (!stack || !this.isInside(entity.position)) continue
       const { x, y, z } = entity.position
-      found[number] = { name: stack.name, count: stack.count, position: [x, y, z].map(rounded) }
+      stacks[number] = { name: stack.name, count: stack.count, position: [x, y, z].map(rounded) }
     }
-    return found
+    return stacks
   }
 
   isInside ({ x, y, z }) {

@@ -29,10 +29,10 @@ class Lids {
     const { scene } = this
     const position = scene.wholeAt(vecOf(place))
     if (!scene.contents.has(position)) return
-    const known = this.open.get(keyOf(position))
+    const lid = this.open.get(keyOf(position))
     const { tick } = scene.region
-    if (known !== undefined) {
-      Object.assign(known, { isShut: viewers === 0, lookAt: tick })
+    if (lid !== undefined) {
+      Object.assign(lid, { isShut: viewers === 0, lookAt: tick })
       return
     }
     if (viewers > 0 && !scene.isUsedByBot(position)) this.follow(position)
@@ -81,17 +81,17 @@ class Lids {
     const { scene, open } = this
     const { position, isShut } = session
     session.lookAt = scene.region.tick + LOOKED_EVERY
-    const found = await this.read(listOf(position))
+    const items = await this.read(listOf(position))
     const isThere = scene.contents.has(position)
-    if (found !== null && isThere) this.tell(session, found)
+    if (items !== null && isThere) this.tell(session, items)
     if ((isShut && session.isShut) || !isThere) open.delete(keyOf(position))
   }
 
-  tell (session, found) {
+  tell (session, present) {
     const { position, who, items } = session
-    const moved = difference(items, found)
-    session.items = { ...found }
-    this.scene.contents.know(position, found)
+    const moved = difference(items, present)
+    session.items = { ...present }
+    this.scene.contents.know(position, present)
     if (who === null) return
     for (const [kind, sign] of [['get_item_from_chest', -1], ['deposit_item_into_chest', 1]]) {
       const part = Object.entries(moved).filter(([, count]) => count * sign > 0).map(([name, count]) => [name, count * sign])

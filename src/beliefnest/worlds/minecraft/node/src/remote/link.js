@@ -48,8 +48,8 @@ class Link extends EventEmitter {
     bot.physicsEnabled = false
     // Waiting code has listeners of its own; Node ends the process on an error without a listener.
     bot.on('error', () => {})
-    let told = null
-    const ended = reason => this.lost(told?.text ?? reason, told?.key)
+    let kick = null
+    const ended = reason => this.lost(kick?.text ?? reason, kick?.key)
     try {
       await this.spawned(bot, client)
       // The connection may have ended during the steps above.
@@ -57,7 +57,7 @@ class Link extends EventEmitter {
       this.bot = bot
       this.isHere = true
       bot.once('end', ended)
-      bot.on('kicked', reason => { told = reasonOf(bot, reason) })
+      bot.on('kicked', reason => { kick = reasonOf(bot, reason) })
       await this.arrive(this)
       this.isReady = this.isHere
     } catch (error) {

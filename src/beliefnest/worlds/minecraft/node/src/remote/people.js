@@ -72,8 +72,8 @@ class People {
 
   nearest (position, condition) {
     const all = [...this.here.values()].filter(condition).map(person => ({ person, off: person.offAim(position) }))
-    const [found] = all.sort((a, b) => a.off - b.off || (a.person.agent < b.person.agent ? -1 : 1))
-    return found?.person.witness ?? null
+    const [nearest] = all.sort((a, b) => a.off - b.off || (a.person.agent < b.person.agent ? -1 : 1))
+    return nearest?.person.witness ?? null
   }
 
   /**

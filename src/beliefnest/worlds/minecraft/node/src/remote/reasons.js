@@ -31,8 +31,8 @@ const REFUSALS = {
  * @param {{key?: string, text: string}} told the server's reason
  */
 function refusal (server, player, { key, text }) {
-  const known = REFUSALS[key]
-  if (known !== undefined) return new Unplayable(`${where(server)} ${known(server)}`)
+  const refusal = REFUSALS[key]
+  if (refusal !== undefined) return new Unplayable(`${where(server)} ${refusal(server)}`)
   return new Unplayable(`${where(server)} does not let ${player} in: ${text}`)
 }
 
@@ -44,13 +44,13 @@ const noLogin = (server, player, why) => new Unplayable(
 
 const onlineMode = server => refusal(server, '', { key: 'multiplayer.disconnect.unverified_username', text: '' })
 
-const wrongVersion = (server, found, held) => new Unplayable(
-  `${where(server)} speaks Minecraft ${found}; this installation has the data of ${held.join(', ')}. Run a server of one ` +
+const wrongVersion = (server, spoken, versions) => new Unplayable(
+  `${where(server)} speaks Minecraft ${spoken}; this installation has the data of ${versions.join(', ')}. Run a server of one ` +
   'of these, or install further versions (docs/servers.md: pip install ./packages/versions); a server that accepts several versions, or reports a wrong one, is ' +
-  `played on with ?version=${held[0]}`)
+  `played on with ?version=${versions[0]}`)
 
-const notHeld = ({ version }, held) => new Unplayable(
-  `?version=${version} asks for a version of Minecraft whose data this installation does not have; it has the data of ${held.join(', ')}, ` +
+const notHeld = ({ version }, versions) => new Unplayable(
+  `?version=${version} asks for a version of Minecraft whose data this installation does not have; it has the data of ${versions.join(', ')}, ` +
   'and further versions can be installed (docs/servers.md: pip install ./packages/versions)')
 
 const noOperator = (server, lacking) => new Unplayable(

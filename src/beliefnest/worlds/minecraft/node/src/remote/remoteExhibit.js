@@ -21,15 +21,15 @@ const note = (who, error) => process.stderr.write(`${who}: ${error.stack}\n`)
 
 class RemoteExhibit {
   /**
-   * @param {object} told EXHIBIT of the channel
+   * @param {object} description EXHIBIT of the channel
    * @param {string} guideName name of the guide's player
    * @param {import('./remoteRegions').RemoteRegions} regions
    */
-  constructor (told, guideName, regions) {
+  constructor (description, guideName, regions) {
     this.regions = regions
-    this.exhibit = new Exhibit(told)
+    this.exhibit = new Exhibit(description)
     const { name, box, origin } = this.exhibit
-    const place = new Place({ name, box, origin, tick: 0, known: [] })
+    const place = new Place({ name, box, origin, tick: 0, agentNames: [] })
     place.recorder = DEAF
     const { operator } = regions
     this.connect = player => regions.connection(player, origin)
@@ -41,7 +41,7 @@ class RemoteExhibit {
     link.on('failed', error => note(guideName, error))
     this.markers = new Map()
     // Stacks that each container was given, by position.
-    this.given = new Map()
+    this.filled = new Map()
     this.saved = null
     this.turn = Promise.resolve()
     this.onBack = () => this.later(() => this.refresh())
@@ -65,7 +65,7 @@ class RemoteExhibit {
     scene.settle(Terrain.of(await setup.build(exhibit.blocks.dense()), exhibit.box))
     await setup.stock(setup.containers(scene.blocks).map(position => {
       const items = exhibit.containers.get(position.join())?.items ?? {}
-      this.given.set(position.join(), this.stacks(position, items))
+      this.filled.set(position.join(), this.stacks(position, items))
       return [...position, items]
     }))
     await setup.write(this.signs)
@@ -121,7 +121,7 @@ class RemoteExhibit {
     const { guide, commands, setup, exhibit } = this
     for (const [x, y, z, state] of blocks.toSorted(([, , , one], [, , , other]) => setup.rank(one) - setup.rank(other))) {
       guide.type(commands.blocks({ state, low: [x, y, z], high: [x, y, z] }))
-      this.given.delete(keyOf({ x, y, z }))
+      this.filled.delete(keyOf({ x, y, z }))
     }
     const places = [...blocks, ...containers].map(([x, y, z]) => vecOf({ x, y, z }))
     for (const place of places) {
@@ -129,12 +129,12 @@ class RemoteExhibit {
       const halves = this.halvesAt(place)
       if (size === 0 || !halves[0].equals(place)) continue
       const wanted = this.stacks(listOf(place), exhibit.containers.get(keyOf(place))?.items ?? {})
-      const given = this.given.get(keyOf(place)) ?? []
+      const stacks = this.filled.get(keyOf(place)) ?? []
       wanted.forEach((stack, slot) => {
-        const before = given[slot] ?? null
+        const before = stacks[slot] ?? null
         if (before?.name !== stack?.name || before?.count !== stack?.count) guide.type(commands.contents(listOf(halves[Math.floor(slot / size)]), slot % size, stack))
       })
-      this.given.set(keyOf(place), wanted)
+      this.filled.set(keyOf(place), wanted)
     }
   }
 

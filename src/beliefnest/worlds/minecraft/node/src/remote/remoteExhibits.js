@@ -12,19 +12,19 @@ class RemoteExhibits {
     this.byName = new Map()
   }
 
-  async open (told) {
+  async open (description) {
     if (this.regions.server.accounts !== null) {
       throw new BadRequest('beliefs cannot be visited on a server in online mode: everybody shown there would need an account; play on one in offline mode, or in the embedded world with realtime=True')
     }
-    if (this.byName.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already; close it first`)
-    const exhibit = new RemoteExhibit(told, this.guideName(), this.regions)
+    if (this.byName.has(description.exhibit)) throw new BadRequest(`${description.exhibit} is shown already; close it first`)
+    const exhibit = new RemoteExhibit(description, this.guideName(), this.regions)
     try {
       await this.regions.operator.attended(() => exhibit.build())
     } catch (error) {
       await exhibit.close()
       throw error
     }
-    this.byName.set(told.exhibit, exhibit)
+    this.byName.set(description.exhibit, exhibit)
     return null
   }
 

@@ -65,11 +65,11 @@ class RemoteRegions {
   }
 
   /** Create a region. Resolve when every agent stands in it. @returns {Promise<object>} SNAPSHOT */
-  async create ({ region: name, box: corners, tick, blocks, containers, agents, items, signs = [], known = Object.keys(agents) }) {
+  async create ({ region: name, box: corners, tick, blocks, containers, agents, items, signs = [], known: agentNames = Object.keys(agents) }) {
     if (this.failure !== null) throw this.failure
     if (this.open !== null) throw new BadRequest(`${this.open.region.name} is played on this server; there can be one place at a time`)
     const [x, z] = this.server.at
-    const region = new RemotePlace({ name, box: new Box(...corners), origin: { x, z }, tick, known }, this.serverClock)
+    const region = new RemotePlace({ name, box: new Box(...corners), origin: { x, z }, tick, agentNames }, this.serverClock)
     this.server.agents = Object.keys(agents)
     this.open = this.equip(region)
     try {
@@ -105,7 +105,7 @@ class RemoteRegions {
    */
   tools (place, operator, fail) {
     const commands = commandsFor(place, state => this.mapping.textForServer(state), this.registry.version)
-    const scene = new Scene(place, this.mapping, operator, commands, position => setup.asked(position).then(found => found ?? setup.read(position)))
+    const scene = new Scene(place, this.mapping, operator, commands, position => setup.asked(position).then(items => items ?? setup.read(position)))
     scene.fail = fail
     const setup = new Setup(scene, operator, commands, this.registry)
     return { scene, commands, setup }
@@ -162,7 +162,7 @@ class RemoteRegions {
   know ({ region, scene }, agents) {
     scene.endTick()
     region.recorder.settle()
-    for (const [agent, state] of Object.entries(agents)) if (state !== null) region.recorder.known.agents.set(agent, state)
+    for (const [agent, state] of Object.entries(agents)) if (state !== null) region.recorder.reported.agents.set(agent, state)
   }
 
   /** Find the blocks that changed while the operator was disconnected, by comparing all of them. */
@@ -271,7 +271,7 @@ class RemoteRegions {
     for (const [x, y, z, state] of blocks) wanted[region.box.index(x, y, z)] = state
     scene.settle(Terrain.of(await setup.build(wanted), region.box))
     for (const position of blocks.map(([x, y, z]) => vecOf({ x, y, z }))) scene.replaced(position, scene.at(position))
-    await setup.stock(containers.filter(([, , , held]) => held !== null))
+    await setup.stock(containers.filter(([, , , items]) => items !== null))
     await setup.write(signs)
     await setup.lay(items)
     await this.moveAgents(present, agents)

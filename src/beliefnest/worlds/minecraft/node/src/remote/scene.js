@@ -184,7 +184,7 @@ class Scene {
   placed (position, after) {
     if (after.properties.half === 'upper' && after.name.endsWith('_door')) return
     const faces = [[0, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0]]
-    const who = faces.reduce((found, face) => found ?? this.whoTried('use', position.plus(new Vec3(...face))), null)
+    const who = faces.reduce((player, face) => player ?? this.whoTried('use', position.plus(new Vec3(...face))), null)
     this.did(who, position, 'place_block', { position: listOf(position), block: this.states.text(after.stateId) })
   }
 
@@ -249,7 +249,7 @@ class Scene {
   dropped (entity) {
     const stack = entity.getDroppedItem?.()
     const isKnown = !stack || this.thrown.some(({ name, count }) => name === stack.name && count === stack.count)
-    if (!isKnown && !this.items.known.has(entity.id)) this.thrownByPerson(entity, stack)
+    if (!isKnown && !this.items.drops.has(entity.id)) this.thrownByPerson(entity, stack)
     this.items.appeared(entity, this.thrown)
   }
 

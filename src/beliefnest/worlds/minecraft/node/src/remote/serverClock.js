@@ -13,8 +13,8 @@ class ServerClock {
    */
   constructor (now = () => performance.now()) {
     this.now = now
-    this.told = null
-    this.toldAt = now()
+    this.sent = null
+    this.sentAt = now()
     // Milliseconds per tick according to the last two messages, but at least the game's own 50.
     this.tickMs = TICK_MS
     this.offset = 0
@@ -30,26 +30,26 @@ class ServerClock {
    * lower one is ignored.
    */
   tell (age) {
-    if (this.told !== null && age < this.told) {
-      this.before ??= { told: this.told, offset: this.offset }
+    if (this.sent !== null && age < this.sent) {
+      this.before ??= { sent: this.sent, offset: this.offset }
       this.offset = this.latest - age
-    } else if (age > this.told) {
-      if (age >= this.before?.told) this.offset = this.before.offset
+    } else if (age > this.sent) {
+      if (age >= this.before?.sent) this.offset = this.before.offset
       this.before = null
     }
-    if (this.told !== null && age > this.told) this.tickMs = Math.max(TICK_MS, this.silence / (age - this.told))
-    this.told = age
-    this.toldAt = this.now()
+    if (this.sent !== null && age > this.sent) this.tickMs = Math.max(TICK_MS, this.silence / (age - this.sent))
+    this.sent = age
+    this.sentAt = this.now()
   }
 
   /** Return true if the server has ever sent its age. */
   get isSet () {
-    return this.told !== null
+    return this.sent !== null
   }
 
   /** Return the milliseconds since the server last sent its age. */
   get silence () {
-    return this.now() - this.toldAt
+    return this.now() - this.sentAt
   }
 
   get age () {
@@ -68,9 +68,9 @@ class ServerClock {
   }
 
   look () {
-    if (this.told === null) return
+    if (this.sent === null) return
     const passed = Math.min(Math.floor(this.silence / this.tickMs), TELLS_EVERY - 1)
-    const age = this.told + this.offset + passed
+    const age = this.sent + this.offset + passed
     if (age <= this.latest) return
     this.latest = age
     this.seen += 1

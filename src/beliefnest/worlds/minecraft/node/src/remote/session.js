@@ -10,7 +10,7 @@ const { ServerClock } = require('./serverClock')
 const reasons = require('./reasons')
 const { answersCompletions, ByWaiting } = require('./settling')
 const ours = require('../versions')
-const { held, heldFor, registryOf } = require('./versions')
+const { installedVersions, heldFor, registryOf } = require('./versions')
 
 
 /**
@@ -64,9 +64,9 @@ async function look (operator, tell) {
 async function versionOf (server) {
   const { host, port, version } = server
   const spoken = version === null ? await pinged(server, { host, port }) : { name: version, key: version }
-  const found = heldFor(spoken.key)
-  if (found === null) throw version === null ? reasons.wrongVersion(server, spoken.name, held()) : reasons.notHeld(server, held())
-  return found
+  const installed = heldFor(spoken.key)
+  if (installed === null) throw version === null ? reasons.wrongVersion(server, spoken.name, installedVersions()) : reasons.notHeld(server, installedVersions())
+  return installed
 }
 
 async function pinged (server, where) {

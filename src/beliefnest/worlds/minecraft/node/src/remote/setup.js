@@ -102,14 +102,14 @@ class Setup {
   /** Return descriptions of blocks that differ from the wanted ones. How fences and panes connect does not matter. */
   flaws (present, wanted) {
     const { states } = this.scene
-    const told = []
+    const differences = []
     this.region.box.forEach((x, y, z, index) => {
       if (present[index] === wanted[index]) return
-      const [found, asked] = [present[index], wanted[index]].map(state => states.describe(state))
-      if (found.name === asked.name && isConnected(asked.name)) return
-      told.push(`${states.text(found.stateId)} instead of ${states.text(asked.stateId)} at (${x}, ${y}, ${z})`)
+      const [there, asked] = [present[index], wanted[index]].map(state => states.describe(state))
+      if (there.name === asked.name && isConnected(asked.name)) return
+      differences.push(`${states.text(there.stateId)} instead of ${states.text(asked.stateId)} at (${x}, ${y}, ${z})`)
     })
-    return told
+    return differences
   }
 
   /**
@@ -119,9 +119,9 @@ class Setup {
   async stock (containers) {
     await this.operator.typeAll(containers.flatMap(([x, y, z, items]) => this.putIn([x, y, z], items)))
     for (const [x, y, z, items] of containers) {
-      const found = await this.read([x, y, z])
-      if (found !== null && !isDeepStrictEqual(sorted(found), sorted(items))) {
-        throw new BadRequest(`the container at (${x}, ${y}, ${z}) holds ${JSON.stringify(found)} on the server instead of ${JSON.stringify(items)}; it said last: ${this.operator.lines.at(-1) ?? 'nothing'}`)
+      const content = await this.read([x, y, z])
+      if (content !== null && !isDeepStrictEqual(sorted(content), sorted(items))) {
+        throw new BadRequest(`the container at (${x}, ${y}, ${z}) holds ${JSON.stringify(content)} on the server instead of ${JSON.stringify(items)}; it said last: ${this.operator.lines.at(-1) ?? 'nothing'}`)
       }
       this.scene.contents.know(vecOf({ x, y, z }), items)
     }
@@ -156,24 +156,24 @@ class Setup {
   /** Return the contents of a container from the server's data. */
   async asked (position) {
     if (!this.operator.can('data')) return null
-    const found = []
+    const stacks = []
     for (const half of this.scene.halvesAt(vec(position))) {
       const data = await this.operator.ask(this.commands.dataAt(listOf(half)))
       if (data === null) return null
-      found.push(...stacksIn(data.Items))
+      stacks.push(...stacksIn(data.Items))
     }
-    return totals(found)
+    return totals(stacks)
   }
 
   /** Return the positions of all containers of a terrain, in order. */
   containers (terrain) {
-    const found = []
+    const places = []
     const { scene: { states, region: { box } } } = this
     const at = ({ x, y, z }) => states.describe(box.contains(x, y, z) ? terrain.at(x, y, z) : 0)
     terrain.find(state => slotsIn(states.describe(state).name) > 0, (x, y, z) => {
-      if (halvesAt(at, vec([x, y, z]))[0].equals(vec([x, y, z]))) found.push([x, y, z])
+      if (halvesAt(at, vec([x, y, z]))[0].equals(vec([x, y, z]))) places.push([x, y, z])
     })
-    return found.sort(byPlace)
+    return places.sort(byPlace)
   }
 
   /**

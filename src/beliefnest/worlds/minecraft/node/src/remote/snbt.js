@@ -22,9 +22,9 @@ function tokensOf (text) {
   const end = text.trimEnd().length
   while (pattern.lastIndex < end) {
     const at = pattern.lastIndex
-    const found = pattern.exec(text)
-    if (found === null) throw new SyntaxError(`data cannot be read from character ${at} on`)
-    const [, mark, double, single, word] = found
+    const match = pattern.exec(text)
+    if (match === null) throw new SyntaxError(`data cannot be read from character ${at} on`)
+    const [, mark, double, single, word] = match
     const quoted = double ?? single
     tokens.push(quoted === undefined ? { mark, word } : { word: quoted.replace(/\\(.)/gs, '$1'), isText: true })
   }
@@ -65,8 +65,8 @@ function listAt (tokens) {
 }
 
 function expect (tokens, mark) {
-  const found = tokens.shift()
-  if (found?.mark !== mark) throw new SyntaxError(`data has ${found?.mark ?? found?.word ?? 'its end'} where ${mark} should be`)
+  const token = tokens.shift()
+  if (token?.mark !== mark) throw new SyntaxError(`data has ${token?.mark ?? token?.word ?? 'its end'} where ${mark} should be`)
 }
 
 module.exports = { parseSnbt }

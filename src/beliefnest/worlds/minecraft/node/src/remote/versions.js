@@ -15,7 +15,7 @@ const AIR = 'air'
 const STONE = 'stone'
 
 /** Return the versions whose data this build has. */
-const held = () => Object.keys(data).filter(version => /^\d+\.\d+(\.\d+)?$/.test(version))
+const installedVersions = () => Object.keys(data).filter(version => /^\d+\.\d+(\.\d+)?$/.test(version))
 
 /**
  * Return the held version for a version or protocol number.
@@ -23,12 +23,12 @@ const held = () => Object.keys(data).filter(version => /^\d+\.\d+(\.\d+)?$/.test
  * @returns {string | null} null if no held version speaks it
  */
 function heldFor (spoken) {
-  if (held().includes(spoken)) return spoken
-  const known = minecraftData.versions.pc
-  const protocol = typeof spoken === 'number' ? spoken : known.find(({ minecraftVersion }) => minecraftVersion === spoken)?.version
+  if (installedVersions().includes(spoken)) return spoken
+  const versions = minecraftData.versions.pc
+  const protocol = typeof spoken === 'number' ? spoken : versions.find(({ minecraftVersion }) => minecraftVersion === spoken)?.version
   if (protocol === undefined) return null
-  const same = known.filter(({ version, usesNetty }) => version === protocol && usesNetty).map(({ minecraftVersion }) => minecraftVersion)
-  return same.find(version => held().includes(version)) ?? null
+  const same = versions.filter(({ version, usesNetty }) => version === protocol && usesNetty).map(({ minecraftVersion }) => minecraftVersion)
+  return same.find(version => installedVersions().includes(version)) ?? null
 }
 
 /** Return the registry of a held version. @returns {object} */
@@ -50,7 +50,7 @@ class BlockMapping {
     this.theirs = theirs
     this.states = blockStates(registry)
     this.theirStates = blockStates(theirs)
-    this.known = new Map()
+    this.translated = new Map()
     // Names of the server's blocks that our version lacks; they are mapped to stone, or to air if they are passable.
     this.strange = new Set()
   }
@@ -58,8 +58,8 @@ class BlockMapping {
   /** Return our state for a state of the server. @returns {number} */
   fromServer (state) {
     if (this.isSame) return state
-    if (!this.known.has(state)) this.known.set(state, this.mapped(state))
-    return this.known.get(state)
+    if (!this.translated.has(state)) this.translated.set(state, this.mapped(state))
+    return this.translated.get(state)
   }
 
   /**
@@ -70,16 +70,16 @@ class BlockMapping {
   textForServer (state) {
     if (this.isSame) return shortText(this.registry, this.states, state)
     const { name, properties } = this.states.describe(state)
-    const found = sameBlock(this.theirs, name, properties, OTHER_NAMES[name] ?? [])
-    if (found === null) throw new BadRequest(`the server's Minecraft ${this.theirs.version.minecraftVersion} has no block ${name}; use another block in the scenario`)
-    return shortText(this.theirs, this.theirStates, found)
+    const block = sameBlock(this.theirs, name, properties, OTHER_NAMES[name] ?? [])
+    if (block === null) throw new BadRequest(`the server's Minecraft ${this.theirs.version.minecraftVersion} has no block ${name}; use another block in the scenario`)
+    return shortText(this.theirs, this.theirStates, block)
   }
 
   mapped (state) {
     const { name, properties, solid } = this.theirStates.describe(state)
     const older = Object.keys(OTHER_NAMES).filter(own => OTHER_NAMES[own].includes(name))
-    const found = sameBlock(this.registry, name, properties, older)
-    if (found !== null) return found
+    const block = sameBlock(this.registry, name, properties, older)
+    if (block !== null) return block
     this.strange.add(name)
     return this.registry.blocksByName[solid ? STONE : AIR].defaultState
   }
@@ -112,4 +112,4 @@ function sameBlock (registry, name, properties, others) {
   }
 }
 
-module.exports = { BlockMapping, held, heldFor, registryOf }
+module.exports = { BlockMapping, installedVersions, heldFor, registryOf }

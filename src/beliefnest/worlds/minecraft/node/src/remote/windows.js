@@ -52,11 +52,11 @@ class Windows {
     const kind = positions.length > 0 ? this.scene.at(used).name : null
     this.opened = { id: windowId, positions, kind, slots: [], own: new Map(), isTold: false, ledger: null, isTable: used !== null && this.scene.at(used).name === 'crafting_table' }
     const { opened } = this
-    opened.ledger = createLedger(positions.slice(0, 1), () => this.held(opened))
+    opened.ledger = createLedger(positions.slice(0, 1), () => this.stacksIn(opened))
   }
 
   /** Return the slots of the container of an opened window. */
-  held (opened) {
+  stacksIn (opened) {
     return Array.from({ length: this.size(opened) }, (_, slot) => opened.slots[slot] ?? null)
   }
 
@@ -85,7 +85,7 @@ class Windows {
   tellContents () {
     const { opened } = this
     if (opened.slots.length === 0) return
-    for (const position of opened.positions.slice(0, 1)) this.scene.contents.show(position, this.held(opened))
+    for (const position of opened.positions.slice(0, 1)) this.scene.contents.show(position, this.stacksIn(opened))
   }
 
   /** Handle the server's content of a slot: somebody else moved an item, or the server undid a click of the agent. */
@@ -109,7 +109,7 @@ class Windows {
     const isKnown = clicks !== undefined && [clicks.before, ...clicks.after].some(each => equal(each, stack))
     // Fires use up their items by themselves, at any moment.
     if (isKnown && !isFurnace(kind ?? '')) {
-      clicks.told = stack
+      clicks.sent = stack
       return
     }
     own.delete(slot)
@@ -122,11 +122,11 @@ class Windows {
    */
   forgetClicks () {
     const { opened, witness } = this
-    for (const [slot, { at, told }] of opened.own) {
+    for (const [slot, { at, sent }] of opened.own) {
       if (witness.followed - at <= ANSWERED_WITHIN) continue
       opened.own.delete(slot)
-      if (told === undefined || equal(told, opened.slots[slot])) continue
-      const set = () => { opened.slots[slot] = told }
+      if (sent === undefined || equal(sent, opened.slots[slot])) continue
+      const set = () => { opened.slots[slot] = sent }
       if (slot < this.size(opened)) opened.ledger.record(set)
       else set()
       this.tellContents()
@@ -156,7 +156,7 @@ class Windows {
       const clicks = opened.own.get(location) ?? { before: before.slots[location] ?? null, after: [] }
       clicks.after.push(opened.slots[location] ?? null)
       clicks.at = this.witness.followed
-      clicks.told = undefined
+      clicks.sent = undefined
       opened.own.set(location, clicks)
     }
     this.tellContents()

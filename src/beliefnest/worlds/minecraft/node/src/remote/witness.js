@@ -99,8 +99,8 @@ class Witness extends EventEmitter {
   dig ({ status, location }) {
     if (status === DIG.START || status === DIG.FINISH) this.try('dig', vecOf(location))
     if (status !== DIG.DROP_STACK && status !== DIG.DROP_ONE) return
-    const held = this.bot.heldItem
-    if (held) this.threw(status === DIG.DROP_ONE ? Object.assign(Object.create(held), { count: 1 }) : held)
+    const stack = this.bot.heldItem
+    if (stack) this.threw(status === DIG.DROP_ONE ? Object.assign(Object.create(stack), { count: 1 }) : stack)
   }
 
   use ({ location }) {

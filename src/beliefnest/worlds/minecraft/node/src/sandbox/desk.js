@@ -37,10 +37,10 @@ function know ({ items, blocks }) {
 
 /** Return a prepared program. The latest ones are kept. */
 function programOf (code, names) {
-  const known = programs.get(code) ?? prepareProgram(code, names)
-  programs.set(code, known)
+  const program = programs.get(code) ?? prepareProgram(code, names)
+  programs.set(code, program)
   if (programs.size > MOST_PROGRAMS) programs.delete(programs.keys().next().value)
-  return known
+  return program
 }
 
 /** Prepare a program. @returns {object} `{text, marks}`, or `{error}` */
@@ -84,14 +84,14 @@ function admitSkill (name, wires, facts) {
       return { own: own.map(plain), checked: checked.map(plain), aim }
     } catch (error) {
       if (!(error instanceof SkillError)) throw error
-      return { error: told(error, name), aim, later: true }
+      return { error: outcomeOf(error, name), aim, later: true }
     }
   })
 }
 
 /** Check a call of a method of a game object; arguments and result as for `admitSkill`. */
 function admitCall (kind, name, wires, facts) {
-  if (!Object.hasOwn(kinds[kind].call, name)) return { error: told(new RefusedError(`${kind} has no call ${describeWire(name)}`), null), cost: 0 }
+  if (!Object.hasOwn(kinds[kind].call, name)) return { error: outcomeOf(new RefusedError(`${kind} has no call ${describeWire(name)}`), null), cost: 0 }
   const [types, , cost = COST.call] = kinds[kind].call[name]
   const exchange = exchangeOf(facts)
   return answered(typeof cost === 'function' ? COST.call : cost, `${kind}.${name}`, () => {
@@ -102,14 +102,14 @@ function admitCall (kind, name, wires, facts) {
 
 /** Return the error for a program that asks for what this world does not have. */
 function refusal (message, label) {
-  return told(new RefusedError(message), label)
+  return outcomeOf(new RefusedError(message), label)
 }
 
 function answered (cost, label, act) {
   try {
     return { cost, ...act() }
   } catch (error) {
-    return { cost, error: told(error, label) }
+    return { cost, error: outcomeOf(error, label) }
   }
 }
 
@@ -118,11 +118,11 @@ function answered (cost, label, act) {
  * @param {{me: string, agents: string[], kinds: string[]}} facts name of its agent, all agents, and the kind of each game
  *   object that the program holds
  */
-function exchangeOf ({ me, agents, kinds: held }) {
+function exchangeOf ({ me, agents, kinds: kindsInUse }) {
   const bot = new GameObject({ username: me, registry, players: Object.fromEntries(agents.map(name => [name, {}])), blockAt: position => new GameObject({ position }) })
   const exchange = new Exchange({ bot, functionFor: () => () => undefined, kindOf: () => null, spend: () => true })
   exchange.handle(bot, 'bot')
-  for (const kind of held.slice(1)) exchange.handle(new GameObject({ kind }), kind)
+  for (const kind of kindsInUse.slice(1)) exchange.handle(new GameObject({ kind }), kind)
   return exchange
 }
 
@@ -140,7 +140,7 @@ function plain (value) {
 
 const isEntry = value => value !== null && typeof value === 'object' && (registry.itemsByName[value.name] === value || registry.blocksByName[value.name] === value)
 
-function told (error, skill) {
+function outcomeOf (error, skill) {
   const name = error instanceof RefusedError ? 'Error' : cut(String(error.name), LONGEST_NAME)
   return { $: 'e', message: cut(String(error.message), LONGEST_ERROR), name, skill, kind: error instanceof RefusedError ? 'refused' : 'skill' }
 }

@@ -218,9 +218,9 @@ class Guest {
       const text = interpreter.string(JSON.stringify(message))
       const answer = interpreter.call(this.functions.dispatch, [text])
       interpreter.free(text)
-      const told = interpreter.text(answer)
+      const answerText = interpreter.text(answer)
       interpreter.free(answer)
-      return told.length > most ? { ok: false, value: { message: tooMuch(most), kind: 'refused' } } : parsed(told)
+      return answerText.length > most ? { ok: false, value: { message: tooMuch(most), kind: 'refused' } } : parsed(answerText)
     })
   }
 

@@ -48,10 +48,10 @@ const ELSEWHERE = {
  * @returns {string} a similar name in scope, or the replacement of a name from another system; otherwise empty
  */
 function nearName (message, names, elsewhere = ELSEWHERE) {
-  const found = UNDEFINED.exec(message)
-  if (found !== null && /^Goal[A-Z]/.test(found[1]) && names.includes('goals')) return `; write goals.${found[1]}`
-  if (found !== null && Object.hasOwn(elsewhere, found[1])) return `; ${elsewhere[found[1]]}`
-  const near = found === null ? null : nearest(found[1], names)
+  const match = UNDEFINED.exec(message)
+  if (match !== null && /^Goal[A-Z]/.test(match[1]) && names.includes('goals')) return `; write goals.${match[1]}`
+  if (match !== null && Object.hasOwn(elsewhere, match[1])) return `; ${elsewhere[match[1]]}`
+  const near = match === null ? null : nearest(match[1], names)
   return near === null ? '' : `; did you mean ${near}?`
 }
 

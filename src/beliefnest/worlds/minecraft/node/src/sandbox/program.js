@@ -33,7 +33,7 @@ class ProgramSyntaxError extends Error {
 
 /**
  * Read a program and prepare it for execution.
- * @param {string} given body of an async function. If it consists only of function declarations, the last async function (or
+ * @param {string} source body of an async function. If it consists only of function declarations, the last async function (or
  *   the only function) is called with `bot`
  * @param {string[]} parameters names in scope, `bot` among them
  * @returns {{text: string, marks: number, locate: function(number, number): ?{line: number, column: number}, callee:
@@ -43,9 +43,9 @@ class ProgramSyntaxError extends Error {
  *   the program, `callee` to the text of the called expression there
  * @throws {ProgramSyntaxError}
  */
-function prepareProgram (given, parameters) {
-  if (typeof given !== 'string') throw new ProgramSyntaxError(`a program is a text, not ${typeof given}`, null, null)
-  const code = given.toWellFormed()
+function prepareProgram (source, parameters) {
+  if (typeof source !== 'string') throw new ProgramSyntaxError(`a program is a text, not ${typeof source}`, null, null)
+  const code = source.toWellFormed()
   if (code.length > MAX_LENGTH) throw tooLarge(code.length, 'characters', MAX_LENGTH)
   const lines = new Lines(code)
   if (lines.count > MAX_LINES) throw tooLarge(lines.count, 'lines', MAX_LINES)

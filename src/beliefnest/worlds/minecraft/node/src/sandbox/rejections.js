@@ -21,12 +21,12 @@ const typed = new WebAssembly.Module(TYPED)
 /**
  * Add a tracker function to the table.
  * @param {WebAssembly.Table} table table of an instance of the interpreter
- * @param {function(bigint, boolean): void} told called with the promise, a JSValue, when it is rejected without a
+ * @param {function(bigint, boolean): void} report called with the promise, a JSValue, when it is rejected without a
  *   handler (false), or when it has got a handler after all (true)
  * @returns {number} the function's index, the same for every instance
  */
-function addTracker (table, told) {
-  const track = (context, promise, reason, handled) => told(promise, handled !== 0)
+function addTracker (table, report) {
+  const track = (context, promise, reason, handled) => report(promise, handled !== 0)
   return table.grow(1, new WebAssembly.Instance(typed, { h: { t: track } }).exports.t)
 }
 

@@ -22,13 +22,13 @@ const BREAKS = /glass/
  * itself.
  */
 function worthTable (registry) {
-  const known = new Map()
+  const worths = new Map()
   const crafted = new Set(['chest', 'crafting_table', 'furnace', 'barrel', 'lever', 'ladder', 'bowl', 'wooden_pickaxe', 'stone_pickaxe', 'wooden_axe',
     'wooden_shovel', 'wooden_hoe', 'wooden_sword', 'stone_axe', 'stone_shovel', 'stone_hoe', 'stone_sword', 'oak_door', 'oak_slab', 'oak_stairs', 'oak_fence',
     'oak_button', 'oak_pressure_plate', 'oak_trapdoor', 'oak_sign', 'oak_boat', 'oak_fence_gate', 'iron_helmet', 'shears', 'bucket'])
   function worth (name) {
-    if (!known.has(name)) known.set(name, WORTH[name] ?? (crafted.has(name) ? fromRecipe(name) : { [name]: 1 }))
-    return known.get(name)
+    if (!worths.has(name)) worths.set(name, WORTH[name] ?? (crafted.has(name) ? fromRecipe(name) : { [name]: 1 }))
+    return worths.get(name)
   }
   function fromRecipe (name) {
     const options = registry.recipes[registry.itemsByName[name].id].map(recipe => materialsOf(recipe))

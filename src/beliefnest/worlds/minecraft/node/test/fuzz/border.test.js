@@ -56,8 +56,8 @@ describe('neighbours of known attacks', () => {
     for (const seed of SEEDS) {
       const random = generator(seed)
       const patches = several(random, 4, () => pick(random, Object.values(PATCHES)))
-      const told = await messagesOf(sandbox, `${patches.map((patch) => `try { ${patch} } catch {}`).join('\n')}\n${USES}`)
-      for (const message of told) {
+      const messages = await messagesOf(sandbox, `${patches.map((patch) => `try { ${patch} } catch {}`).join('\n')}\n${USES}`)
+      for (const message of messages) {
         // A broken program may say anything about its own errors.
         assert.ok(honest.includes(message) || /^\["(log|settled)",/.test(message), `seed ${seed}: ${message} after ${patches.join('\n')}`)
       }

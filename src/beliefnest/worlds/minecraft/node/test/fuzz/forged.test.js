@@ -134,9 +134,9 @@ describe('forged at random', () => {
     }
   }
 
-  function checkWalks (first, told) {
+  function checkWalks (first, frames) {
     const places = Object.fromEntries(Object.entries(first.agents).map(([name, { position }]) => [name, position]))
-    for (const { agents, events } of told) {
+    for (const { agents, events } of frames) {
       for (const [name, { position }] of Object.entries(agents)) places[name] = position
       for (const { actor, detail: { destination } } of events.filter(({ kind }) => kind === 'move_to')) {
         const away = Math.hypot(...destination.map((value, axis) => Math.floor(value) - Math.floor(places[actor][axis])))
@@ -190,12 +190,12 @@ describe('forged at random', () => {
       const first = await snapshot(region)
       frames.length = 0
       const { results } = await run(region, random)
-      const told = [...frames]
+      const played = [...frames]
       const last = await snapshot(region)
-      const events = told.flatMap(frame => frame.events)
+      const events = played.flatMap(frame => frame.events)
       try {
         checkPossessions(first, last, events)
-        checkWalks(first, told)
+        checkWalks(first, played)
         checkTexts(events)
         checkCell(first, last)
         for (const { error } of Object.values(results)) assert.ok([null, 'timeout', 'bot'].includes(error?.kind ?? null), JSON.stringify(error))

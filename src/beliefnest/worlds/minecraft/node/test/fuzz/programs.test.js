@@ -67,7 +67,7 @@ describe('random programs', () => {
   }
 
   /** Apply frames to a snapshot. Items are compared by content, because numbers differ between regions. */
-  function fold (snapshot, told) {
+  function fold (snapshot, frames) {
     const state = { ...plain(snapshot) }
     const shape = [0, 1, 2].map(axis => BOXED[1][axis] - BOXED[0][axis] + 1)
     const containers = new Map(state.containers.map(entry => [entry.slice(0, 3).join(), entry]))
@@ -75,7 +75,7 @@ describe('random programs', () => {
       if (value === null) delete table[key]
       else table[key] = value
     })
-    for (const frame of told.map(plain)) {
+    for (const frame of frames.map(plain)) {
       change(state.agents, frame.agents)
       change(state.items, frame.items)
       for (const [x, y, z, id] of frame.blocks) {
@@ -93,7 +93,7 @@ describe('random programs', () => {
 
   /** Check that barriers surround a region's box and nothing is beyond them. */
   function surroundings (region) {
-    const found = new Set()
+    const differences = new Set()
     const { box, origin, columns } = region
     const grown = box.grown()
     for (const [chunkX, chunkZ] of columns) {
@@ -105,12 +105,12 @@ describe('random programs', () => {
             if (box.contains(sx, y, sz)) continue
             const { name } = serv.blocks.describe(column.getBlockStateId({ x, y, z }))
             const expected = grown.contains(sx, y, sz) ? 'barrier' : 'air'
-            if (name !== expected) found.add(`${name} at (${sx}, ${y}, ${sz})`)
+            if (name !== expected) differences.add(`${name} at (${sx}, ${y}, ${sz})`)
           }
         }
       }
     }
-    return [...found]
+    return [...differences]
   }
 
   const counted = items => {
@@ -144,15 +144,15 @@ describe('random programs', () => {
     const first = await wholeSnapshot(handler, region)
     frames.length = 0
     const { results } = await perform({ op: 'run', region, programs, timeout_ticks: timeout })
-    const told = [...frames]
+    const played = [...frames]
     const last = await wholeSnapshot(handler, region)
     try {
-      assert.deepEqual(told.filter(frame => frame.region !== region), [], 'frames of other regions')
+      assert.deepEqual(played.filter(frame => frame.region !== region), [], 'frames of other regions')
       // Frames do not contain the internal state.
       const { tick, internal_state: internalState } = plain(last)
-      assert.deepEqual({ ...fold(first, told), tick, internal_state: internalState }, plain(last))
+      assert.deepEqual({ ...fold(first, played), tick, internal_state: internalState }, plain(last))
       const food = Object.fromEntries(Object.entries(first.agents).map(([name, state]) => [name, state.food]))
-      const missing = mayBeMissing(worth, told, food, last.tick - first.tick, FURNACES.length + 1)
+      const missing = mayBeMissing(worth, played, food, last.tick - first.tick, FURNACES.length + 1)
       const describe = state => serv.blocks.describe(state)
       assert.deepEqual(unexplained(materials(worth, first, describe), materials(worth, last, describe), missing), [])
       for (const { position } of Object.values(last.agents)) {
@@ -164,7 +164,7 @@ describe('random programs', () => {
       error.message = `${error.message}\nafter ${timeout} ticks of ${JSON.stringify(programs, null, 1).replaceAll('\\n', '\n')}\nwhich gave ${JSON.stringify(results)}`
       throw error
     }
-    return { programs: Object.keys(programs).length, acts: told.flatMap(({ events }) => events).filter(({ kind }) => kind !== 'block_update').length }
+    return { programs: Object.keys(programs).length, acts: played.flatMap(({ events }) => events).filter(({ kind }) => kind !== 'block_update').length }
   }
 
   const only = process.env.BELIEFNEST_FUZZ_SEED

@@ -32,14 +32,14 @@ function statesOf (box) {
 function cut (states, box) {
   const first = box.low.map(value => value - 1)
   const counts = box.shape.map(side => Math.ceil((side + 2) / SIDE))
-  const [rows, chunks, known] = [[], [], new Map()]
+  const [rows, chunks, rowsByKey] = [[], [], new Map()]
   new Box([0, 0, 0], counts.map(count => count - 1)).forEach((i, j, k) => {
     const corner = [i, j, k].map((value, axis) => first[axis] + value * SIDE)
     const cells = []
     new Box(corner, corner.map(value => value + SIDE - 1)).forEach((x, y, z) => cells.push(box.contains(x, y, z) ? states[box.index(x, y, z)] : 0))
     const key = cells.join()
-    if (!known.has(key)) known.set(key, chunks.push(cells) - 1)
-    rows.push(known.get(key))
+    if (!rowsByKey.has(key)) rowsByKey.set(key, chunks.push(cells) - 1)
+    rows.push(rowsByKey.get(key))
   })
   return { first, side: SIDE, counts, rows: runsOf(Int32Array.from(rows)), states: runsOf(Int32Array.from(chunks.flat())) }
 }
@@ -86,12 +86,12 @@ for (const box of BOXES) {
       })
 
       it('tells where blocks of a kind are', () => {
-        const found = new Set()
+        const indices = new Set()
         Terrain.read(blocks, box).find(state => state === 2, (x, y, z, state) => {
           assert.equal(state, 2)
-          found.add(box.index(x, y, z))
+          indices.add(box.index(x, y, z))
         })
-        assert.deepEqual([...found].sort((a, b) => a - b), [...states.keys()].filter(index => states[index] === 2))
+        assert.deepEqual([...indices].sort((a, b) => a - b), [...states.keys()].filter(index => states[index] === 2))
       })
     })
   }

@@ -21,20 +21,20 @@ const half = (name, open) => encode(registry, 'oak_door', { half: name, open: St
 /** Return a place with a shut door, and the list of its recorded events. */
 function place () {
   const box = new Box([0, 0, 0], [0, 1, 0])
-  const told = []
-  const recorder = { blockChanged () {}, event: ({ kind, actor, detail }) => told.push([kind, actor, detail.open]) }
+  const events = []
+  const recorder = { blockChanged () {}, event: ({ kind, actor, detail }) => events.push([kind, actor, detail.open]) }
   const region = { box, recorder, tick: 0, followed: 0, toServer: ([x, y, z]) => new Vec3(x, y, z), emit () {} }
   const scene = new Scene(region, new BlockMapping(registry, registry), {}, {}, async () => null)
   scene.settle(Terrain.of(Int32Array.from([half('lower', false), half('upper', false)]), box))
   const witness = new Witness('sally', region, scene, Item)
   witness.bot = { entity: { position: new Vec3(0.5, 0, 0.5) } }
   scene.witnesses.set('sally', witness)
-  return { scene, witness, told }
+  return { scene, witness, events }
 }
 
 for (const order of [['lower', 'upper'], ['upper', 'lower']]) {
   test(`a door is told of as often as it was used, also when the ${order[1]} half is heard of after the next use`, () => {
-    const { scene, witness, told } = place()
+    const { scene, witness, events } = place()
     const change = (name, open) => scene.blockChanged(name === 'upper' ? LOWER.offset(0, 1, 0) : LOWER, half(name, open))
     witness.use({ location: LOWER })
     change(order[0], true)
@@ -43,7 +43,7 @@ for (const order of [['lower', 'upper'], ['upper', 'lower']]) {
     change(order[1], true)
     for (const name of order) change(name, false)
     scene.endTick()
-    assert.deepEqual(told, [['use_door', 'sally', true], ['use_door', 'sally', false]])
+    assert.deepEqual(events, [['use_door', 'sally', true], ['use_door', 'sally', false]])
   })
 }
 
@@ -57,7 +57,7 @@ test('a bot that is on its way back is where it stood', () => {
 test('a click is remembered for as many ticks as this process follows', () => {
   const { witness, witness: { windows, region } } = place()
   windows.open({ windowId: 1 })
-  windows.opened.own.set(0, { before: null, after: [], at: witness.followed, told: undefined })
+  windows.opened.own.set(0, { before: null, after: [], at: witness.followed, sent: undefined })
   region.tick += 1000
   region.followed += 1
   windows.forgetClicks()

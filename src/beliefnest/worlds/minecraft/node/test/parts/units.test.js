@@ -50,15 +50,15 @@ describe('runs of blocks', () => {
 describe('the channel', () => {
   it('reads messages however they are cut', () => {
     const [sent, stream] = [[], Object.assign(new EventEmitter(), { write: bytes => sent.push(bytes) })]
-    const told = []
-    const channel = new Channel(stream, message => told.push(message))
+    const received = []
+    const channel = new Channel(stream, message => received.push(message))
     const messages = [{ a: 1 }, { text: 'x'.repeat(70000) }, {}, { list: [1, 2, 3] }]
     for (const message of messages) channel.send(message)
     const bytes = Buffer.concat(sent)
     for (const size of [1, 3, 7, 4096, bytes.length]) {
-      told.length = 0
+      received.length = 0
       for (let from = 0; from < bytes.length; from += size) stream.emit('data', bytes.subarray(from, from + size))
-      assert.deepEqual(told, messages, `in pieces of ${size} bytes`)
+      assert.deepEqual(received, messages, `in pieces of ${size} bytes`)
     }
   })
 })

@@ -34,9 +34,9 @@ for (const version of Object.keys(NEWER)) {
         continue
       }
       for (const own of [defaultState, maxStateId]) {
-        const found = state(mapping.textForServer(own))
-        others += found !== own
-        assert.equal(mapping.states.text(mapping.fromServer(found)), mapping.states.text(own))
+        const theirs = state(mapping.textForServer(own))
+        others += theirs !== own
+        assert.equal(mapping.states.text(mapping.fromServer(theirs)), mapping.states.text(own))
       }
     }
     assert.ok(others > 100)

@@ -88,11 +88,11 @@ test('who says to be within a block, beyond one, or far away, stays where they w
 
 test('what is no line of text is refused with a sentence, and nobody hears it', async () => {
   const client = await anneIn()
-  const told = []
-  client.on('system_chat', ({ content }) => told.push(JSON.stringify(content)))
+  const lines = []
+  client.on('system_chat', ({ content }) => lines.push(JSON.stringify(content)))
   client.chat('two\nlines')
   await settled(client)
-  assert.match(told.join('\n'), /what anne utters/)
+  assert.match(lines.join('\n'), /what anne utters/)
   assert.equal(node.frames.flatMap(({ events }) => events).filter(({ kind }) => kind === 'chat').length, 0)
 })
 

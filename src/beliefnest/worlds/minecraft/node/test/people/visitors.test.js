@@ -40,7 +40,7 @@ const join = username => {
   return client
 }
 const type = (client, command) => client.write('chat_command', { command, ...SIGNED })
-const told = async client => JSON.stringify((await once(client, 'system_chat'))[0].content)
+const nextLine = async client => JSON.stringify((await once(client, 'system_chat'))[0].content)
 
 test('a visitor is shown what stands there, and what their client sends changes nothing', async () => {
   const anne = join('anne')
@@ -50,7 +50,7 @@ test('a visitor is shown what stands there, and what their client sends changes 
   const guest = join('guest')
   const names = []
   guest.on('player_info', ({ data }) => names.push(...data.map(({ player }) => player?.name)))
-  assert.match(await told(guest), /You look at \/sally: what sally believes/)
+  assert.match(await nextLine(guest), /You look at \/sally: what sally believes/)
   assert.deepEqual(names, ['guest', 'sally_1'])
   const before = await node.request('snapshot', { region: '/' })
 
@@ -70,7 +70,7 @@ test('a visitor is shown what stands there, and what their client sends changes 
   guest.write('update_sign', { location: place, isFrontText: true, text1: 'a', text2: '', text3: '', text4: '' })
   guest.write('held_item_slot', { slotId: -5 })
   for (const [command, answer] of [['tp 1 2', /one command/], ['tp 500 0 0', /Nothing stands there/], ['tp anne 0 0 0', /yourself alone/], ['op guest', /one command/]]) {
-    const line = told(guest)
+    const line = nextLine(guest)
     type(guest, command)
     assert.match(await line, answer)
   }
@@ -85,16 +85,16 @@ test('who was taken over while they looked at something is called back when hand
   while ((await node.request('people', { invited: ['anne'] })).here.length > 0) await node.request('step', { region: '/', ticks: 1 })
   const client = join('anne')
   const answerTo = async command => {
-    const line = told(client)
+    const line = nextLine(client)
     type(client, command)
     return line
   }
   const handOver = async (invited, seen) => {
-    const line = seen === undefined ? null : told(client)
+    const line = seen === undefined ? null : nextLine(client)
     assert.deepEqual((await node.request('people', { invited })).here, [])
     if (seen !== undefined) assert.match(await line, seen)
   }
-  assert.match(await told(client), /You are anne\. Here/)
+  assert.match(await nextLine(client), /You are anne\. Here/)
   await answerTo(`tp ${X} -51 0`)
   await handOver([])
   await handOver(['anne'], /You can be anne again.*tp 0 -51 0/)
@@ -109,7 +109,7 @@ test('who was taken over while they looked at something is called back when hand
 
 test('who is no longer to see anything has to go', async () => {
   const guest = join('other')
-  await told(guest)
+  await nextLine(guest)
   const [ended] = await Promise.all([once(guest, 'kick_disconnect'), node.request('close_exhibit', { exhibit: '/sally' })])
   assert.match(JSON.stringify(ended), /no longer shown/)
 })

@@ -50,22 +50,22 @@ function structure (position = [0, 1, 0]) {
 function blocksOf ({ shape, palette: texts, blocks }) {
   const box = new Box([0, 0, 0], shape.map(length => length - 1))
   const terrain = Terrain.read(blocks, box)
-  const found = {}
+  const textByPlace = {}
   box.forEach((x, y, z) => {
     const text = texts[terrain.at(x, y, z)]
-    if (!text.endsWith('air')) found[[x, y, z]] = text
+    if (!text.endsWith('air')) textByPlace[[x, y, z]] = text
   })
-  return found
+  return textByPlace
 }
 
 for (const [kind, bytes] of [['version 2', schem2()], ['version 3', schem3()]]) {
   test(`a Sponge schematic of ${kind} is read`, () => {
     const place = readPlace(bytes, CUT)
     assert.deepEqual(place.shape, [2, 2, 3])
-    const found = blocksOf(place)
-    assert.equal(Object.values(found).filter(text => text === 'minecraft:stone').length, 6)
-    assert.equal(found['0,1,0'], CHEST)
-    assert.equal(found['1,1,0'], 'minecraft:oak_sign[rotation=4]')
+    const blocks = blocksOf(place)
+    assert.equal(Object.values(blocks).filter(text => text === 'minecraft:stone').length, 6)
+    assert.equal(blocks['0,1,0'], CHEST)
+    assert.equal(blocks['1,1,0'], 'minecraft:oak_sign[rotation=4]')
     assert.deepEqual(place.containers, [[0, 1, 0, { bread: 3 }]])
     assert.deepEqual(place.signs, kind === 'version 3' ? [[1, 1, 0, 'left\nright']] : [])
   })

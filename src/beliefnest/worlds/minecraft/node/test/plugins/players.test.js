@@ -23,16 +23,16 @@ test('all who are there know one another, names and bodies', async () => {
 test('whoever moves is seen to move by all, and only those who listen are told', async () => {
   await inWorld({ agents: three() }, async world => {
     const { bots: { sally, anne, bob }, players, at } = world
-    const [told, gone] = [[], sally.players.anne.entity]
-    const listener = entity => told.push([entity.username, entity.yaw, entity.position.x])
+    const [moves, gone] = [[], sally.players.anne.entity]
+    const listener = entity => moves.push([entity.username, entity.yaw, entity.position.x])
     bob.on('entityMoved', listener)
     await world.ticks(1)
-    assert.deepEqual(told, [])
+    assert.deepEqual(moves, [])
     players.anne.place(at(2.25, FLOOR, 3.5), Math.PI / 2)
     assert.equal(gone.position.x, -4.5, 'a move is not seen before its packet has arrived')
     await world.ticks(1)
     // The turn of body and head, and then the way.
-    assert.deepEqual(told, [['anne', Math.PI / 2, -4.5], ['anne', Math.PI / 2, -4.5], ['anne', Math.PI / 2, 2.25]])
+    assert.deepEqual(moves, [['anne', Math.PI / 2, -4.5], ['anne', Math.PI / 2, -4.5], ['anne', Math.PI / 2, 2.25]])
     for (const { players: { anne: { entity } } } of [sally, bob]) {
       assert.deepEqual([entity.position.toArray(), entity.yaw, entity.pitch, entity.headYaw], [[2.25, FLOOR, 3.5], Math.PI / 2, 0, Math.PI / 2])
     }
@@ -41,7 +41,7 @@ test('whoever moves is seen to move by all, and only those who listen are told',
     bob.removeListener('entityMoved', listener)
     players.sally.place(at(1.5, FLOOR, 0.5))
     await world.ticks(1)
-    assert.deepEqual([told.length, bob.players.sally.entity.position.x], [3, 1.5])
+    assert.deepEqual([moves.length, bob.players.sally.entity.position.x], [3, 1.5])
     world.regions.bodies.remove(world.region, 'anne')
     await world.regions.bodies.add(world.region, { anne: agent([-2.5, FLOOR, -2.5], { yaw: 1 }) })
     await world.ticks(1)

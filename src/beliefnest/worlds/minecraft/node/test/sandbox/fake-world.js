@@ -90,8 +90,8 @@ function fakeScope (bot) {
     },
     async exploreUntil (own, direction, maxDistance, callback) {
       for (let step = 1; step <= maxDistance; step++) {
-        const found = await callback(step)
-        if (found) return found
+        const result = await callback(step)
+        if (result) return result
       }
       return null
     },

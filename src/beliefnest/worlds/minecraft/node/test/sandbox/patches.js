@@ -55,9 +55,9 @@ const USES = `
 /** Return the messages of a program at the border, up to its end. @returns {Promise<string[]>} */
 async function messagesOf (sandbox, code) {
   const { answer } = Session.prototype
-  const told = []
+  const messages = []
   Session.prototype.answer = function (text) {
-    told.push(text)
+    messages.push(text)
     return answer.call(this, text)
   }
   try {
@@ -66,7 +66,7 @@ async function messagesOf (sandbox, code) {
   } finally {
     Session.prototype.answer = answer
   }
-  return told
+  return messages
 }
 
 module.exports = { messagesOf, PATCHES, USES }

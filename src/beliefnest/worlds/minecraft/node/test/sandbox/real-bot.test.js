@@ -57,8 +57,8 @@ describe('a program with a real bot', () => {
     const { title } = kinds.window.get
     const nbt = { type: 'compound', value: { text: { type: 'string', value: 'Large Chest' } } }
     const all = ['Inventory', '"Chest"', '{"translate":"container.chest"}', nbt, { type: 'string', value: 'Barrel' }, null, undefined]
-    const found = ['Inventory', 'Chest', 'Chest', 'Large Chest', 'Barrel', '', '']
-    assert.deepEqual(all.map(each => title.toGuest({ bot }, each)), found)
+    const titles = ['Inventory', 'Chest', 'Chest', 'Large Chest', 'Barrel', '', '']
+    assert.deepEqual(all.map(each => title.toGuest({ bot }, each)), titles)
   })
 
   const WORKS = {

@@ -114,8 +114,8 @@ test('of two who reach into a chest at the same time each has what it was told i
     const { bots, skills } = world
     const outcomes = await world.during(Promise.allSettled(Object.keys(agents).map(name =>
       skills[name].getItemFromChest(bots[name], CHEST, { diamond: 1 }))))
-    const told = outcomes.map(({ status }) => status === 'fulfilled' ? { diamond: 1 } : {})
-    assert.deepEqual([await world.has('sally'), await world.has('anne')], told)
+    const itemsLeft = outcomes.map(({ status }) => status === 'fulfilled' ? { diamond: 1 } : {})
+    assert.deepEqual([await world.has('sally'), await world.has('anne')], itemsLeft)
     assert.deepEqual(await world.everything(), { diamond: 1 })
   })
 })

@@ -35,9 +35,9 @@ test('who writes on a sign tells beforehand what the text claims', async () => {
     const { bots: { sally }, skills: { sally: own } } = world
     const claims = [{ kind: 'located', item: 'diamond', place: new Vec3(0.5, -50, 3.5) }]
     await world.during(own.writeSign(sally, SIGN, ['tools', 'no food'], claims))
-    const told = [{ kind: 'located', item: 'diamond', place: [0, -50, 3] }]
+    const expected = [{ kind: 'located', item: 'diamond', place: [0, -50, 3] }]
     assert.deepEqual(world.emitted.filter(({ kind }) => kind === 'claims'), [
-      { actor: 'sally', kind: 'claims', detail: { text: 'tools\nno food', position: PLACE, claims: told } }
+      { actor: 'sally', kind: 'claims', detail: { text: 'tools\nno food', position: PLACE, claims: expected } }
     ])
     assert.match((await failure(world, own.writeSign(sally, SIGN, '', claims))).message, /empty text cannot claim/)
     assert.match((await failure(world, own.writeSign(sally, SIGN, 'x', 'y'))).message, /must be a list/)

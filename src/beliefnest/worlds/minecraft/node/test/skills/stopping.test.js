@@ -19,11 +19,11 @@ test('a skill does nothing more once its program has ended', async () => {
     abort.abort()
     stopBot(sally)
     await assert.rejects(world.during(smelting), { skill: 'smeltItem', message: /program that called it has ended/ })
-    const held = await world.has('sally')
+    const items = await world.has('sally')
     await world.ticks(500)
     assert.equal((await world.container(...FURNACE)).iron_ingot, 2)
     assert.deepEqual(await world.everything(), { coal: 1, iron_ingot: 2 })
-    assert.deepEqual([await world.has('sally'), world.emitted, sally.currentWindow], [held, [], null])
+    assert.deepEqual([await world.has('sally'), world.emitted, sally.currentWindow], [items, [], null])
   })
 })
 

@@ -8,7 +8,7 @@ const both = (inventory, blocks = [], annes = {}) => ({
 })
 
 /** Return the counts of items in events of gifts, by actor, other agent and item. */
-function given (events) {
+function countsOf (events) {
   const total = {}
   for (const { actor, detail } of events) {
     for (const [name, count] of Object.entries(detail.items)) {
@@ -30,8 +30,8 @@ test('what is given is tossed, picked up and received', async () => {
     assert.deepEqual([await world.has('sally'), await world.has('anne')], [{ diamond: 1 }, { diamond: 2 }])
     assert.deepEqual(await world.everything(), before)
     // One event or two: both diamonds are picked up in one tick or in two.
-    assert.deepEqual(given(await world.events('give_item_to_other')), { 'sally anne diamond': 2 })
-    assert.deepEqual(given(await world.events('receive_item_from_other')), { 'anne sally diamond': 2 })
+    assert.deepEqual(countsOf(await world.events('give_item_to_other')), { 'sally anne diamond': 2 })
+    assert.deepEqual(countsOf(await world.events('receive_item_from_other')), { 'anne sally diamond': 2 })
     assert.deepEqual(world.emitted, [])
   })
 })
@@ -188,8 +188,8 @@ test('walks of one agent that look for ways through doors at the same time take 
     }
     sally.on('physicsTick', () => { [searches, most] = [0, Math.max(most, searches)] })
     const walks = Array.from({ length: 6 }, () => skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -9), 0).catch(error => error.message))
-    const told = await world.during(Promise.all(walks))
-    assert.ok(told.some(message => /no way to it on foot/.test(message)), String(told))
+    const outcomes = await world.during(Promise.all(walks))
+    assert.ok(outcomes.some(message => /no way to it on foot/.test(message)), String(outcomes))
     // The first search need not wait: both sides of one door.
     assert.ok(most > 0 && most <= 3, String(most))
   })
@@ -206,8 +206,8 @@ test('exploreUntil stops at what it looks for, and gives null when it is not fou
   await withSkills(both({}, [[-9, FLOOR, 0, 'chest'], [9, FLOOR, 0, 'stone'], [9, FLOOR + 1, 0, 'stone']]), async world => {
     const { bots: { sally }, skills: { sally: own } } = world
     const near = name => () => sally.findBlock({ matching: sally.registry.blocksByName[name].id, maxDistance: 4 })
-    const found = await world.during(own.exploreUntil(sally, new Vec3(-1, 0, 0), 20, near('chest')))
-    assert.equal(found.name, 'chest')
+    const block = await world.during(own.exploreUntil(sally, new Vec3(-1, 0, 0), 20, near('chest')))
+    assert.equal(block.name, 'chest')
     assert.equal(await world.during(own.exploreUntil(sally, new Vec3(0, 0, 1), 6, near('barrel'))), null)
     assert.match((await failure(world, own.exploreUntil(sally, new Vec3(0, 0, 1), 30, near('barrel')))).message, /could not reach .*further on/)
     assert.match((await failure(world, own.exploreUntil(sally, new Vec3(0, 1, 0), 5, near('chest')))).message, /on the level/)
@@ -292,11 +292,11 @@ test('who speaks tells beforehand what the words claim', async () => {
 test('a whisper to nobody, and commands, do nothing', async () => {
   await withSkills(both({}), async world => {
     const { bots: { sally } } = world
-    const told = []
-    sally.on('messagestr', text => told.push(text))
+    const lines = []
+    sally.on('messagestr', text => lines.push(text))
     for (const words of ['/tell carol x', '/tell sally x', '/tell anne', '/op sally', '/give sally diamond']) sally.chat(words)
     await world.ticks(2)
-    assert.deepEqual(told, [
+    assert.deepEqual(lines, [
       'There is no other agent carol here.', 'There is no other agent sally here.',
       ...['tell', 'op', 'give'].map(name => `Agents have no commands: /${name} was not run.`)
     ])

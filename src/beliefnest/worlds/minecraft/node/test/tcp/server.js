@@ -44,10 +44,10 @@ function keepTime (places) {
   }, TICK_MS / 2)
 }
 
-function serve (known) {
+function serve (operations) {
   process.on('message', async ({ id, op, ...args }) => {
     try {
-      process.send({ id, result: await known[op](args) })
+      process.send({ id, result: await operations[op](args) })
     } catch (error) {
       process.send({ id, error: error.stack })
     }

@@ -16,9 +16,9 @@ class Refusal extends Error {}
 
 /** Return the state of a text such as `minecraft:lever[face=floor]`. @returns {number} */
 function stateOf (serv, text) {
-  const [, name, given] = /^(?:minecraft:)?(\w+)(?:\[(.*)\])?$/.exec(text) ?? []
+  const [, name, inner] = /^(?:minecraft:)?(\w+)(?:\[(.*)\])?$/.exec(text) ?? []
   if (serv.registry.blocksByName[name] === undefined) throw new Refusal(`Unknown block type '${text}'`)
-  const properties = Object.fromEntries((given ? given.split(',') : []).map(each => each.split('=')))
+  const properties = Object.fromEntries((inner ? inner.split(',') : []).map(each => each.split('=')))
   try {
     return serv.blocks.state(name, properties)
   } catch (error) {
@@ -141,12 +141,12 @@ function effect (serv, [act, name, what, , amplifier]) {
 function kill (serv, [selector]) {
   const [, conditions] = /^@e\[type=item,(.*)\]$/.exec(selector) ?? []
   if (conditions === undefined) throw new Refusal(`this server kills dropped items only, not ${selector}`)
-  const given = Object.fromEntries(conditions.split(',').map(each => each.split('=')).map(([key, value]) => [key, Number(value)]))
-  const found = serv.itemEntities(({ x, y, z }) => x >= given.x && x <= given.x + given.dx + 1 &&
-    y >= given.y && y <= given.y + given.dy + 1 && z >= given.z && z <= given.z + given.dz + 1)
-  if (found.length === 0) throw new Refusal('No entity was found')
-  found.forEach(({ id }) => serv.removeItem(id))
-  return `Killed ${found.length} entities`
+  const limits = Object.fromEntries(conditions.split(',').map(each => each.split('=')).map(([key, value]) => [key, Number(value)]))
+  const entities = serv.itemEntities(({ x, y, z }) => x >= limits.x && x <= limits.x + limits.dx + 1 &&
+    y >= limits.y && y <= limits.y + limits.dy + 1 && z >= limits.z && z <= limits.z + limits.dz + 1)
+  if (entities.length === 0) throw new Refusal('No entity was found')
+  entities.forEach(({ id }) => serv.removeItem(id))
+  return `Killed ${entities.length} entities`
 }
 
 function summon (serv, [what, x, y, z, tag]) {

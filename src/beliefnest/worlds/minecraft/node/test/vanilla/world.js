@@ -51,7 +51,7 @@ class OpenWorld {
     this.verified = {}
     // Console lines that are typed at a later tick.
     this.later = []
-    this.known = new Map()
+    this.statesByName = new Map()
     this.region = openRegion(age)
     serv.region = this.region
     build(serv, this.region)
@@ -74,7 +74,7 @@ class OpenWorld {
       sendAway(other, 'duplicate_login')
       return
     }
-    const state = this.known.get(client.username) ?? NEWCOMER
+    const state = this.statesByName.get(client.username) ?? NEWCOMER
     const end = new TcpEnd(client, action => action(), error => {
       if (!BROKEN_OFF.includes(error.code)) process.stderr.write(`${client.username}: ${error.stack}\n`)
     })
@@ -90,7 +90,7 @@ class OpenWorld {
     end.on('tab_complete', ({ transactionId }) => {
       if (!this.lacking.has('completions')) end.write('tab_complete', { transactionId, start: 1, length: 0, matches: [] })
     })
-    player.on('disconnected', () => this.known.set(player.username, {
+    player.on('disconnected', () => this.statesByName.set(player.username, {
       position: region.toScenario(player.position), ...player.pose, on_ground: player.onGround, health: player.health, food: player.food, gameMode: player.gameMode
     }))
   }
@@ -120,8 +120,8 @@ class OpenWorld {
   }
 
   command (player, text) {
-    const known = this.commandsOf(player).includes(text.split(' ')[0])
-    player.system(known ? runCommand(this.serv, text, player) : 'Unknown or incomplete command, see below for error')
+    const isCommand = this.commandsOf(player).includes(text.split(' ')[0])
+    player.system(isCommand ? runCommand(this.serv, text, player) : 'Unknown or incomplete command, see below for error')
   }
 
   tellAge (players) {
@@ -202,7 +202,7 @@ function stall (milliseconds) {
 
 /** Open a region that records nothing. */
 function openRegion (age) {
-  const region = new Region({ name: 'world', seed: 'world', box: new Box(...BOX), origin: { x: 0, z: 0 }, tick: age, known: [] })
+  const region = new Region({ name: 'world', seed: 'world', box: new Box(...BOX), origin: { x: 0, z: 0 }, tick: age, agentNames: [] })
   region.recorder = { event () {}, serverEvent () {}, blockChanged () {} }
   return region
 }

@@ -51,11 +51,11 @@ module.exports = function defineGlobals (env) {
   }
 
   function lazyTable (name) {
-    const known = own(new Map())
+    const values = own(new Map())
     let keys
     const get = (key) => {
-      if (!known.has(key)) known.set(key, deepFreeze(ask('data', quote(name), quote(key))))
-      return known.get(key)
+      if (!values.has(key)) values.set(key, deepFreeze(ask('data', quote(name), quote(key))))
+      return values.get(key)
     }
     const allKeys = () => (keys ??= ask('keys', quote(name)))
     const refuse = readOnly(`mcData.${name}`)

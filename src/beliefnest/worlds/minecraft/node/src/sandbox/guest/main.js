@@ -14,10 +14,10 @@ module.exports = function defineMain (env) {
   // that the host names.
   function bind (scopeText) {
     const { parameters, skills, data } = parse(scopeText)
-    const known = { ...env.bindSkills(skills), Vec3: env.Vec3, goals: env.goals, Movements: env.Movements, ...env.claims }
-    if (data) known.mcData = env.bindData()
-    known.bot = decode({ $: 'h', id: 0, k: 'bot' })
-    scope = parameters.map((name) => known[name])
+    const globals = { ...env.bindSkills(skills), Vec3: env.Vec3, goals: env.goals, Movements: env.Movements, ...env.claims }
+    if (data) globals.mcData = env.bindData()
+    globals.bot = decode({ $: 'h', id: 0, k: 'bot' })
+    scope = parameters.map((name) => globals[name])
   }
 
   function start (program, marks) {

@@ -155,11 +155,11 @@ const playerName = {
 const matcher = {
   toHost: (x, wire, where) => {
     const matches = x.functionOf(wire, where)
-    const known = new Map()
+    const verdicts = new Map()
     return (candidate) => {
       if (candidate.position) return Boolean(matches(candidate))
-      if (!known.has(candidate.stateId)) known.set(candidate.stateId, Boolean(matches({ ...stateOf(candidate) })))
-      return known.get(candidate.stateId)
+      if (!verdicts.has(candidate.stateId)) verdicts.set(candidate.stateId, Boolean(matches({ ...stateOf(candidate) })))
+      return verdicts.get(candidate.stateId)
     }
   }
 }

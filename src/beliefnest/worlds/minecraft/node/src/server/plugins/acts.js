@@ -25,9 +25,9 @@ module.exports.player = (player) => {
   }
 
   player.tellActs = () => {
-    const told = [...counted.values()]
+    const acts = [...counted.values()]
     counted = new Map()
-    for (const { kind, other, items } of told) player.emitEvent({ kind, detail: other === undefined ? { items } : { other, items } })
+    for (const { kind, other, items } of acts) player.emitEvent({ kind, detail: other === undefined ? { items } : { other, items } })
   }
   for (const end of ['rest', 'disconnected']) player.on(end, () => player.tellActs())
 }

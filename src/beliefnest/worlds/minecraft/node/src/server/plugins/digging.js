@@ -93,8 +93,8 @@ module.exports.player = (player, serv) => {
 
   function swapHands () {
     const { slots } = player.inventory
-    const held = player.slotOfHand(0);
-    [slots[held], slots[OFF_HAND_SLOT]] = [slots[OFF_HAND_SLOT], slots[held]]
+    const hand = player.slotOfHand(0);
+    [slots[hand], slots[OFF_HAND_SLOT]] = [slots[OFF_HAND_SLOT], slots[hand]]
     player.inventoryChanged()
   }
 

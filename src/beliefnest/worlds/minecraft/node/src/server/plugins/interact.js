@@ -43,7 +43,7 @@ module.exports.player = (player, serv) => {
   function use (packet, position) {
     const block = serv.blocks.at(position)
     const bareHands = !player.itemInHand(0) && !player.itemInHand(1)
-    const given = {
+    const use = {
       player,
       position,
       block,
@@ -51,8 +51,8 @@ module.exports.player = (player, serv) => {
       cursor: { x: packet.cursorX, y: packet.cursorY, z: packet.cursorZ },
       hand: packet.hand ?? 0,
     }
-    if ((!player.crouching || bareHands) && player.canSee(position) && serv.interact(given)) return
-    serv.useItemOn(given)
+    if ((!player.crouching || bareHands) && player.canSee(position) && serv.interact(use)) return
+    serv.useItemOn(use)
   }
 
   client.on('block_place', (packet) => {

@@ -35,8 +35,8 @@ module.exports.server = (serv) => {
       return slots ? [[player.agent, ...slots]] : []
     }),
     restore (rows) {
-      const told = new Map(rows.map(([agent, ...slots]) => [agent, slots]))
-      serv.players.forEach((player) => player.restoreSlots(told.get(player.agent)))
+      const rowsByAgent = new Map(rows.map(([agent, ...slots]) => [agent, slots]))
+      serv.players.forEach((player) => player.restoreSlots(rowsByAgent.get(player.agent)))
     },
   })
 }
@@ -55,7 +55,7 @@ module.exports.player = (player, serv) => {
 
   // Cache the result, which is asked for at every tick. Stacks are immutable, so that identical stacks in the same
   // slots mean the same possessions.
-  let known = { stacks: [], heldItemSlot: 0, possessions: null }
+  let last = { stacks: [], heldItemSlot: 0, possessions: null }
 
   /**
    * Return `{inventory: {name: count}, equipment: {slot: name}}`, with everything worn, held or on the cursor. The
@@ -63,14 +63,14 @@ module.exports.player = (player, serv) => {
    */
   player.possessions = () => {
     const { inventory: { slots }, heldItemSlot, windows: { cursor } } = player
-    const same = known.heldItemSlot === heldItemSlot && known.stacks.length === slots.length &&
-      known.stacks[0] === cursor && slots.every((item, i) => i === 0 || item === known.stacks[i])
+    const same = last.heldItemSlot === heldItemSlot && last.stacks.length === slots.length &&
+      last.stacks[0] === cursor && slots.every((item, i) => i === 0 || item === last.stacks[i])
     if (!same) {
       // Slot 0 shows the result of crafting, which nobody owns yet.
       const stacks = [cursor, ...slots.slice(1)]
-      known = { stacks, heldItemSlot, possessions: possessionsOf(stacks, stacks[HOTBAR_START + heldItemSlot]) }
+      last = { stacks, heldItemSlot, possessions: possessionsOf(stacks, stacks[HOTBAR_START + heldItemSlot]) }
     }
-    return known.possessions
+    return last.possessions
   }
 
   /** Set the possessions of the player. @throws RangeError if they do not fit */
@@ -97,10 +97,10 @@ module.exports.player = (player, serv) => {
   }
 
   /** Fill the slots as `saveSlots` returned them. */
-  player.restoreSlots = ([held, ...rows] = [0]) => {
+  player.restoreSlots = ([heldSlot, ...rows] = [0]) => {
     const before = player.possessions()
     const plain = usual()
-    carry(held, slotsOf(serv.Item, serv.registry, rows, player.inventory.slots.length))
+    carry(heldSlot, slotsOf(serv.Item, serv.registry, rows, player.inventory.slots.length))
     if (!isDeepStrictEqual(player.possessions(), before)) carry(0, plain)
     player.inventoryChanged()
   }

@@ -16,8 +16,8 @@ module.exports.server = (serv) => {
     save: () => serv.players.filter(({ onGround, fallsFrom }) => !onGround && fallsFrom !== null)
       .map(({ agent, fallsFrom }) => [agent, fallsFrom]),
     restore (rows) {
-      const told = new Map(rows)
-      for (const player of serv.players) player.fallsFrom = told.get(player.agent) ?? null
+      const heights = new Map(rows)
+      for (const player of serv.players) player.fallsFrom = heights.get(player.agent) ?? null
     },
   })
 }

@@ -39,7 +39,7 @@ class Circuit {
   }
 
   /** Return the power that sources give to a wire at a position: all or nothing. */
-  given (position) {
+  powerFrom (position) {
     return FACES.some((face) => {
       const place = position.plus(face)
       return sourceOf(this.at(place)) !== null || (this.conducts(place) && this.holdsSource(place))
@@ -69,11 +69,11 @@ class Circuit {
 
   /** Return how a wire connects by side. The end of a line points on; a wire without neighbours keeps its form. */
   connections (position) {
-    const found = Object.fromEntries(SIDES.map((side) => [side, this.connection(position, side)]))
-    const to = SIDES.filter((side) => found[side] !== 'none')
+    const shape = Object.fromEntries(SIDES.map((side) => [side, this.connection(position, side)]))
+    const to = SIDES.filter((side) => shape[side] !== 'none')
     const { properties } = this.at(position)
-    if (to.length === 1) found[OPPOSITE[to[0]]] = 'side'
-    if (to.length > 0 || SIDES.every((side) => properties[side] === 'none')) return found
+    if (to.length === 1) shape[OPPOSITE[to[0]]] = 'side'
+    if (to.length > 0 || SIDES.every((side) => properties[side] === 'none')) return shape
     return Object.fromEntries(SIDES.map((side) => [side, 'side']))
   }
 
@@ -98,23 +98,23 @@ class Circuit {
 
   /** Return the positions of wires near a position and of all wires that hang together with them, in order. */
   network (position) {
-    const found = new Map()
+    const wires = new Map()
     const left = around([position]).filter((place) => this.isWire(place))
     while (left.length > 0) {
       const place = left.pop()
-      if (found.has(`${place}`)) continue
-      found.set(`${place}`, place)
+      if (wires.has(`${place}`)) continue
+      wires.set(`${place}`, place)
       for (const side of SIDES) {
         const beside = place.plus(vectorOf(side))
         left.push(...[DOWN, new Vec3(0, 0, 0), UP].map((step) => beside.plus(step)).filter((next) => this.isWire(next)))
       }
     }
-    return inOrder([...found.values()])
+    return inOrder([...wires.values()])
   }
 
   /** Return the power of each wire of a network, by position as text. @returns {Map<string, number>} */
   levels (wires) {
-    const levels = new Map(wires.map((place) => [`${place}`, this.given(place)]))
+    const levels = new Map(wires.map((place) => [`${place}`, this.powerFrom(place)]))
     const feeding = wires.map((place) => [`${place}`, this.feeders(place).map(String)])
     for (let changed = true; changed;) {
       changed = false
@@ -130,14 +130,14 @@ class Circuit {
 
 /** Return the positions within two steps of some positions, in order. */
 function around (positions) {
-  const found = new Map()
+  const places = new Map()
   for (const position of positions) {
     for (const step of NEAR) {
       const place = position.plus(step)
-      found.set(`${place}`, place)
+      places.set(`${place}`, place)
     }
   }
-  return inOrder([...found.values()])
+  return inOrder([...places.values()])
 }
 
 const inOrder = (positions) => positions.sort((a, b) => a.x - b.x || a.y - b.y || a.z - b.z)

@@ -101,14 +101,14 @@ function numberKey (menu, slot, button) {
   const hotbar = menu.hotbar(button)
   if (hotbar === null || hotbar === slot) return
   const there = menu.get(slot)
-  const held = menu.get(hotbar)
+  const hotbarStack = menu.get(hotbar)
   if (menu.isResult(slot)) {
-    if (there && !held) menu.set(hotbar, menu.takeResult())
+    if (there && !hotbarStack) menu.set(hotbar, menu.takeResult())
     return
   }
-  if (held && held.count > capacity(menu, slot, held)) return
+  if (hotbarStack && hotbarStack.count > capacity(menu, slot, hotbarStack)) return
   if (there && there.count > capacity(menu, hotbar, there)) return
-  menu.set(slot, held)
+  menu.set(slot, hotbarStack)
   menu.set(hotbar, there)
 }
 

@@ -144,11 +144,11 @@ class ContainerStore {
 
   /** Fill containers as `save` returned them. */
   restore (rows, region) {
-    const told = new Map(rows.map(([x, y, z, ...slots]) => [keyOf(region.toServer([x, y, z])), slots]))
+    const slotsByPlace = new Map(rows.map(([x, y, z, ...slots]) => [keyOf(region.toServer([x, y, z])), slots]))
     for (const position of this.positions((place) => region.contains(place))) {
       const present = this.allSlots(position)
       const counts = countByName(present)
-      const slots = slotsOf(this.serv.Item, this.serv.registry, told.get(keyOf(position)) ?? [], present.length)
+      const slots = slotsOf(this.serv.Item, this.serv.registry, slotsByPlace.get(keyOf(position)) ?? [], present.length)
       const same = isDeepStrictEqual(countByName(slots), counts)
       this.fill(position, same ? slots : this.arranged(position, counts) ?? present)
     }
@@ -176,9 +176,9 @@ class ContainerStore {
    */
   changedWholes (position, old, now) {
     const blockAs = (block) => (place) => (place.equals(position) ? block : this.serv.blocks.at(place))
-    const held = [old, now].filter(({ name }) => this.kinds.has(name)).map((block) => halvesAt(blockAs(block), position))
-    const others = held.flat().filter((half) => !half.equals(position))
-    const isOne = held.some(([first]) => first.equals(position))
+    const containers = [old, now].filter(({ name }) => this.kinds.has(name)).map((block) => halvesAt(blockAs(block), position))
+    const others = containers.flat().filter((half) => !half.equals(position))
+    const isOne = containers.some(([first]) => first.equals(position))
     return [...(isOne ? [position] : []), ...others]
   }
 

@@ -16,9 +16,9 @@ const GIFT_TICKS = 240
 function handOver (players, now, receiver, throws, item) {
   for (const [agent, count, tick] of throws) {
     if (agent === receiver.agent || now - tick > GIFT_TICKS) continue
-    const given = withCount(item, count)
-    players.find((other) => other.agent === agent)?.countAct('give_item_to_other', given, receiver.agent)
-    receiver.countAct('receive_item_from_other', given, agent)
+    const stack = withCount(item, count)
+    players.find((other) => other.agent === agent)?.countAct('give_item_to_other', stack, receiver.agent)
+    receiver.countAct('receive_item_from_other', stack, agent)
   }
 }
 

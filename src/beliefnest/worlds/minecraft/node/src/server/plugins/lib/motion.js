@@ -21,18 +21,18 @@ const overlaps = (a, b) => a[0] < b[3] && a[3] > b[0] && a[1] < b[4] && a[4] > b
 
 /** Return the collision boxes around `box`, in world coordinates; `shapesAt(position)` returns those of one block. */
 function obstacles (box, shapesAt) {
-  const found = []
+  const boxes = []
   for (let x = Math.floor(box[0]); x <= Math.floor(box[3]); x++) {
     // Begin one block lower: fences and walls are higher than their block.
     for (let y = Math.floor(box[1]) - 1; y <= Math.floor(box[4]); y++) {
       for (let z = Math.floor(box[2]); z <= Math.floor(box[5]); z++) {
         for (const s of shapesAt(new Vec3(x, y, z))) {
-          found.push([s[0] + x, s[1] + y, s[2] + z, s[3] + x, s[4] + y, s[5] + z])
+          boxes.push([s[0] + x, s[1] + y, s[2] + z, s[3] + x, s[4] + y, s[5] + z])
         }
       }
     }
   }
-  return found
+  return boxes
 }
 
 /** Return how far a box can move along one axis (0 x, 1 y, 2 z). */

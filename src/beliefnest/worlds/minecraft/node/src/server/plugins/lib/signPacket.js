@@ -20,7 +20,7 @@ function entityOf (text) {
     color: nbt.string('black'),
     messages: nbt.list(nbt.string(messages.map((line) => JSON.stringify(line)))),
   })
-  const four = (given) => Array.from({ length: LINES }, (_, i) => given[i] ?? '')
+  const four = (lines) => Array.from({ length: LINES }, (_, i) => lines[i] ?? '')
   return nbt.comp({ is_waxed: nbt.byte(0), front_text: side(four(lines)), back_text: side(four([])) })
 }
 

@@ -33,9 +33,9 @@ function layOut ({ Item, registry }, size, { inventory, equipment }, who) {
   for (const [part, slot] of Object.entries(WORN)) {
     if (equipment[part]) slots[slot] = take(equipment[part])
   }
-  const [held, ...others] = STORE_ORDER
-  if (equipment.main_hand) slots[held] = take(equipment.main_hand)
-  const free = equipment.main_hand ? STORE_ORDER : [...others, held]
+  const [firstSlot, ...others] = STORE_ORDER
+  if (equipment.main_hand) slots[firstSlot] = take(equipment.main_hand)
+  const free = equipment.main_hand ? STORE_ORDER : [...others, firstSlot]
   for (const stack of stacksOf(Item, registry, rest)) {
     const inOffHand = slots[OFF_HAND]?.name === stack.name ? [OFF_HAND] : []
     if (store(storage(slots), stack, [...free, ...inOffHand])) {
@@ -46,12 +46,12 @@ function layOut ({ Item, registry }, size, { inventory, equipment }, who) {
 }
 
 /** Return the possessions in stacks; the stack of slot 0 is that on the cursor. */
-function possessionsOf (stacks, held) {
+function possessionsOf (stacks, heldStack) {
   const equipment = {}
   for (const [part, slot] of Object.entries(WORN)) {
     if (stacks[slot]) equipment[part] = stacks[slot].name
   }
-  if (held) equipment.main_hand = held.name
+  if (heldStack) equipment.main_hand = heldStack.name
   return { inventory: countByName([...stacks.slice(1), stacks[0]]), equipment }
 }
 

@@ -44,13 +44,13 @@ function encode (registry, name, properties) {
 /** Return cached queries about the block states of a version. */
 function blockStates (registry) {
   const Block = require('prismarine-block')(registry)
-  const known = new Map()
+  const lookups = new Map()
 
   /** Return `{stateId, type, name, shapes, solid, full, transparent, properties}`. */
   function describe (stateId) {
-    if (!known.has(stateId)) {
+    if (!lookups.has(stateId)) {
       const block = Block.fromStateId(stateId, 0)
-      known.set(stateId, Object.freeze({
+      lookups.set(stateId, Object.freeze({
         stateId,
         type: block.type,
         name: block.name,
@@ -61,7 +61,7 @@ function blockStates (registry) {
         properties: Object.freeze(decode(registry, stateId)),
       }))
     }
-    return known.get(stateId)
+    return lookups.get(stateId)
   }
 
   /** Return a state as text, e.g. `lever[face=floor,facing=north,powered=true]`. */
