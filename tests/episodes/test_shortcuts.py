@@ -19,6 +19,7 @@ from beliefnest.episodes.shortcuts import rules_of, trained_rule
 from beliefnest.episodes.tasks import generated
 from beliefnest.episodes.trials import wins_of
 
+FUNCTIONAL = Path(__file__).parents[2] / "examples" / "functional"
 SEEDS = at_night(20, 6)
 BALANCED = ("watchman", "kitchen", "joint-lift")
 """Tasks whose right choice is any but the nearest: a rule wins at most about a third."""
@@ -38,6 +39,18 @@ def test_no_rule_without_beliefs_wins_a_balanced_task(name: str, rule: str) -> N
     (won,) = wins_of(lambda seed: bn.Task.load(name, seed), [rule], range(SEEDS))
     # A shortcut wins all; chance wins so many in less than one of a hundred cases.
     assert won <= at_night(14, 5)
+
+
+def test_rules_say_what_is_false_where_the_goal_is_a_false_belief() -> None:
+    document = bn.Task.scenario_document(str(FUNCTIONAL / "mislead.yaml"))
+    assert document is not None
+
+    def of_seen(move: int) -> bn.Task:
+        return bn.Task.instance_of(document, 1000, 1, {"seen": move})
+
+    # Each names another one of three things, of which one is right in each instance.
+    for key in ("first", "nearest", "farthest"):
+        assert wins_of(of_seen, [f"rule:{key}+plan:tell"], range(3)) == [1]
 
 
 @pytest.mark.parametrize("name", few_by_day(BALANCED))

@@ -452,7 +452,7 @@ class SearchItemsOptions:
     out: Annotated[
         Path, typer.Option("--out", "-o", help="Folder; an interrupted search continues in it.")
     ]
-    model: Annotated[str, typer.Option(help="Model to search weaknesses of.")] = "offline"
+    model: Annotated[str, typer.Option(help="Model to search weaknesses of.")]
     budget: Annotated[
         int, typer.Option(help="Most questions; half of them search, the others test.")
     ] = 400

@@ -102,7 +102,9 @@ class EpisodeDesign:
             _check_policies(policies)
         if not self.orders and (self.models or any(each in _ORDERED for each in self.policies)):
             raise StudyKeyError(
-                "orders", "orders is empty; models, search and infer play at the orders named there"
+                "orders",
+                "orders is empty; models, search and infer play at the orders named there, such as "
+                "orders: [0, 1]",
             )
         named = [player.text for player in self.players]
         if twice := next((name for name in named if named.count(name) > 1), None):

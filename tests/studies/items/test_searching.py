@@ -214,12 +214,15 @@ def test_twins_tell_the_same_story_but_for_one_factor(place):
     [
         (["--budget", "0"], "budget is 0; give at least 40"),
         (["--model", "nobody"], "no model 'nobody'"),
+        (["--model", "offline"], "name another model"),
+        (["--transfer", "offline"], "name another model"),
         (["--budget", "40", "-o", "study.yaml"], "study.yaml is no folder; name another folder"),
         (["--budget", "40", "-o", "."], "is not empty and holds no study"),
     ],
 )
 def test_wrong_input_is_refused(place, capsys, options, fault):
-    assert run_command_line(["search-items", "study.yaml", "-o", "out", *options]) == 2
+    command = ["search-items", "study.yaml", "-o", "out", "--model", "chance", *options]
+    assert run_command_line(command) == 2
     assert fault in capsys.readouterr().err
     assert not (place / "out").exists()
 
@@ -228,5 +231,5 @@ def test_a_study_in_which_nothing_varies_is_refused(place, capsys):
     one = SCENARIO.replace("[1, 2]", "[1]").replace("[Hello., Well.]", "[Hello.]")
     one = one.partition("        - question: Where does Ann")[0]
     (place / "moves.yaml").write_text(one, encoding="utf-8")
-    assert run_command_line(["search-items", "study.yaml", "-o", "out"]) == 2
+    assert run_command_line(["search-items", "study.yaml", "--model", "chance", "-o", "out"]) == 2
     assert "nothing varies in this study" in capsys.readouterr().err

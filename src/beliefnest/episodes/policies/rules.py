@@ -20,6 +20,7 @@ from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, it
 from beliefnest.errors import UnknownNameError
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call, program_of
+from beliefnest.world.claims import Claim
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Position
 
@@ -44,8 +45,8 @@ class Rule:
     Attributes:
         take: Key of the place to take from, to switch at or to go to.
         put: Key of the place to put into, where the goal leaves it open.
-        tells: `tell`: first says one true thing, of the place that `take` ranks first; `tell-all`:
-            all true things.
+        tells: `tell`: first says one thing, of the place that `take` ranks first; `tell-all`: all
+            things. They are true, or what the goal wants others to believe falsely.
 
     With `plan` as `put`, the agent only speaks by the rule and then acts as `search:0` does.
     """
@@ -79,11 +80,11 @@ class Rule:
     def _told(self, view: AgentView, mind: Imagination) -> Iterator[Call]:
         if not self.tells or not view.may_speak:
             return
-        claims = list(claims_of_mind(mind, list(view.brief.considered), lies=False))
+        claims = _sayable(view, mind)
         if self.tells == "tell" and claims:
-            place = chosen(self.take, [claim.cell for claim in claims], view)
-            claims = [claim for claim in claims if claim.cell == place][:1]
-        yield from map(said, claims)
+            place = chosen(self.take, list(claims.values()), view)
+            claims = {claim: at for claim, at in claims.items() if at == place}
+        yield from map(said, list(claims)[: 1 if self.tells == "tell" else None])
 
     def _deeds(self, view: AgentView, mind: Imagination) -> Iterator[Call]:
         goals = _goals_of(view)
@@ -122,6 +123,25 @@ def rule_of(text: str) -> Rule:
             f"{quoted(tells)} in the rule {quoted(text)} is unknown; give tell or tell-all"
         )
     return Rule(take, put or "nearest", _TELLS[tells])
+
+
+def _sayable(view: AgentView, mind: Imagination) -> dict[Claim, Position]:
+    """Return what an agent may say, each claim with the place of what it is about.
+
+    An agent whose goal is that others believe what is not so says that; any other says the truth.
+    """
+    told = claims_of_mind(mind, list(view.brief.considered), lies=False)
+    true = {claim: claim.cell for claim in told}
+    places = {claim.item: at for claim, at in true.items()}
+    wanted = {
+        Claim.located(item, each.fact.store)
+        for each in view.goal.reach
+        if each.path and each.fact.store is not None
+        for item in each.fact.items
+    }
+    false = {claim for claim in wanted - set(true) if claim.item in places}
+    lies = claims_of_mind(mind, [view.goal], lies=True)
+    return {claim: places[claim.item] for claim in lies if claim in false} or true
 
 
 def places_of(view: AgentView, mind: Imagination, item: str) -> list[Position]:
