@@ -325,7 +325,9 @@ def list_installed(json: Json = False) -> None:
     """List scenarios, tasks, suites, templates, worlds and models."""
     from beliefnest.cli.listing import print_installed
 
-    print_installed(as_json=json)
+    group = typer.main.get_command(app)
+    assert isinstance(group, typer.core.TyperGroup)
+    print_installed([*group.commands], as_json=json)
 
 
 @app.command(rich_help_panel=_PLAY)

@@ -1,8 +1,7 @@
 """`beliefnest list`: names of installed scenarios, tasks, suites, templates and the like."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-import typer
 from rich.text import Text
 
 from beliefnest.cli.console import print_report, result_table
@@ -17,8 +16,8 @@ from beliefnest.suites import FILMS, suite_names
 from beliefnest.worlds.names import server_forms, world_names
 
 
-def print_installed(*, as_json: bool) -> None:
-    """Print all names that commands accept, by kind."""
+def print_installed(commands: Sequence[str], *, as_json: bool) -> None:
+    """Print all names that commands accept, by kind; `commands` are the names of the commands."""
     scenarios = [builtin_outline(name) for name in builtin_names()]
     content = {
         "scenarios": [
@@ -34,7 +33,7 @@ def print_installed(*, as_json: bool) -> None:
         "templates": list(BUILT_IN_TEMPLATES),
         "worlds": list(world_names()),
         "models": list(model_names()),
-        "hidden": list(_hidden()),
+        "hidden": list(_hidden(commands)),
     }
     table = result_table("scenario", "condition", "about", right=("condition",))
     for scenario in scenarios:
@@ -49,20 +48,16 @@ def print_installed(*, as_json: bool) -> None:
         "models": model_names(),
     }
     lines = (Text(f"{what}: {', '.join(names)}") for what, names in further.items())
-    print_report(content, [table, *lines, *_hidden()], as_json=as_json)
+    print_report(content, [table, *lines, *_hidden(commands)], as_json=as_json)
 
 
-def _hidden() -> Iterator[str]:
+def _hidden(commands: Sequence[str]) -> Iterator[str]:
     """Yield a line for each part of another package that has a name of this package's own.
 
     A filter of such a name is an error of its first use.
     """
-    from beliefnest.cli.app import app
-
-    commands = typer.main.get_command(app)
-    assert isinstance(commands, typer.core.TyperGroup)
     for what, names in (
-        ("command", (*commands.commands,)),
+        ("command", commands),
         ("kind", ()),
         ("model", [each.partition(":")[0] for each in model_names()]),
         ("policy", _policies() if installed_names("beliefnest.policies") else ()),
