@@ -132,3 +132,14 @@ def test_a_study_of_scenarios_is_refused(tmp_path, capsys):
     study = str(EXAMPLES.parent / "benchmark" / "study.yaml")
     assert run_command_line(["items", study, "-o", str(tmp_path), "--functional"]) == 2
     assert "name the files under `tasks`" in capsys.readouterr().err
+
+
+def test_a_study_that_names_another_order_is_refused(tmp_path, capsys):
+    study, out = tmp_path / "study.yaml", tmp_path / "out"
+    study.write_text(
+        f"tasks: [{EXAMPLES / 'tell.yaml'}]\npolicies: [search]\norders: [2]\nconditions: [1]\n",
+        encoding="utf-8",
+    )
+    assert run_command_line(["items", str(study), "-o", str(out), "--functional"]) == 2
+    assert "tell.yaml is of order 1, and `orders` has 2; add" in capsys.readouterr().err
+    assert not out.exists()

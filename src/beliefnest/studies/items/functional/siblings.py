@@ -78,7 +78,7 @@ def families_of(design: EpisodeDesign) -> Iterator[TaskFamily]:
     """Yield the families of a study of episodes: each file under each of its conditions.
 
     Raises:
-        InputError: A task has no random instances.
+        InputError: A task has no random instances, or is of an order that the study does not name.
     """
     for name in design.tasks:
         document = Task.scenario_document(name)
@@ -88,7 +88,15 @@ def families_of(design: EpisodeDesign) -> Iterator[TaskFamily]:
             )
         there = condition_numbers(document)
         for condition in there if there == (None,) else design.conditions or there:
-            yield TaskFamily(name, document, condition)
+            family = TaskFamily(name, document, condition)
+            order = family.instance(design.seeds[0]).order
+            if design.orders and order not in design.orders:
+                named = ", ".join(map(str, design.orders))
+                raise InputError(
+                    f"condition {condition or 0} of {name} is of order {order}, and `orders` has "
+                    f"{named}; add the order, or choose other `conditions`"
+                )
+            yield family
 
 
 def check_functional(design: object, name: str) -> EpisodeDesign:
