@@ -169,14 +169,48 @@ def test_shortcuts_answer_from_events(made):
     assert "outermost" not in item(made, 1, "right", "Where will").shortcuts
 
 
+SAY = """
+  - agent: anne
+    program: await say(bot, 'WORDS', [located('bone', new Vec3(2, 0, -4))])
+probes:"""
+
+
+def items_where_somebody_says(folder, words, change=lambda text: text):
+    text = change(SCENARIO.replace("\nprobes:", SAY.replace("WORDS", words), 1))
+    (folder / "boxes.yaml").write_text(text, encoding="utf-8")
+    return bn.Study([str(folder / "boxes.yaml")], variations={"to": ["right"]}).items()
+
+
+def weighing(text):
+    return text.replace("perception: {", "perception: {testimony: informed, ")
+
+
 def test_words_are_events_if_they_are_about_what_is_asked_for(tmp_path):
-    say = "  - {agent: anne, program: \"await say(bot, 'WORDS')\"}\nprobes:"
     for words, last in (("The bone is in the right box.", "right"), ("The right box!", "left")):
-        text = SCENARIO.replace("probes:", say.replace("WORDS", words), 1)
-        (tmp_path / "boxes.yaml").write_text(text, encoding="utf-8")
-        made = bn.Study([str(tmp_path / "boxes.yaml")], variations={"to": ["right"]}).items()
+        made = items_where_somebody_says(tmp_path, words, weighing)
         found = item(made, 1, "right", "Where will").shortcuts
         assert found["last_event"] == f"{last} box"
+
+
+def without_claims(text):
+    return text.replace(", [located('bone', new Vec3(2, 0, -4))]", "")
+
+
+@pytest.mark.parametrize("change", [without_claims, lambda text: text])
+def test_words_that_change_no_belief_leave_the_answer_open(tmp_path, change):
+    """Only what is so, and who heard nothing, is beyond such words."""
+    made = items_where_somebody_says(tmp_path, "The bone is in the right box.", change)
+    dropped = [each for each in made.dropped if each.condition == 1]
+    assert [each.question[:8] for each in dropped] == ["Where wi", "Where do", "What is "]
+    assert "Sally heard Anne say 'The bone is in the right box.'" in dropped[0].why
+    assert "give the utterance a claim" in dropped[0].why
+    assert not any(each.is_unanswerable for each in dropped)
+    assert item(made, 1, "right", "Where is").checked == "follows"
+
+
+@pytest.mark.parametrize("words", ["The bone is mine.", "The right box is red.", "Hello."])
+def test_words_that_name_no_place_of_the_thing_leave_the_answer_as_it_is(tmp_path, words):
+    assert items_where_somebody_says(tmp_path, words, without_claims).dropped == ()
 
 
 def test_answers_in_words_have_no_options_and_no_chance(made):

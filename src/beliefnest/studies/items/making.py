@@ -20,7 +20,7 @@ from beliefnest.scenarios.questioning import shuffled
 from beliefnest.studies.checking import StudyKeyError
 from beliefnest.studies.items.balance import balanced_names
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord, item_id
-from beliefnest.studies.items.shortcuts import shortcuts
+from beliefnest.studies.items.shortcuts import mentions, names_asked_for, shortcuts
 from beliefnest.studies.participants.items import Item, ItemQuestion, item_name, items_of
 from beliefnest.studies.participants.playing import STORY, OnItem, played_items
 from beliefnest.world.paths import parse_path
@@ -125,6 +125,7 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
         fault = reason if verdict == "differs" else ""
         if asked.options and len(asked.right) > 1:
             fault = f"several options are right: {listed([repr(each) for each in asked.right])}"
+        fault = fault or _contested(nest, asked, naming_for(nest, probe))
     except ScenarioError as error:
         fault, is_unanswerable = str(error), True
     if fault:
@@ -165,6 +166,33 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
         checked=verdict,
         shortcuts=shortcuts(nest, asked, naming, options, text),
     )
+
+
+def _contested(nest: Nest, asked: Answers, naming: Naming) -> str:
+    """Return why words that an agent of the chain heard leave the answer open; empty: none do.
+
+    Words without a claim, or whose claim nobody takes up, change no belief; readers may think so.
+    """
+    believed = asked.believed
+    if believed is None:
+        return ""
+    is_container = believed.kind == "container"
+    options = asked.options or (tuple(_items(nest)) if is_container else naming.all)
+    wanted = names_asked_for(believed, naming)
+    for name in parse_path(believed.path, nest.agents):
+        hearer = nest[f"/{name}"]
+        taken_up = {(tick, speaker) for tick, speaker, _ in hearer.heard_claims}
+        if nest.setting.perception.testimony == "none":
+            taken_up = set()
+        for tick, speaker, words in hearer.state.chat:
+            is_plain = (tick, speaker) not in taken_up
+            if is_plain and mentions(wanted, words) and mentions(options, words):
+                return (
+                    f"{titled(name)} heard {titled(speaker)} say {words!r}, which changes no "
+                    "belief, but may for readers; give the utterance a claim and the scenario "
+                    "another `testimony` than none, or leave it out"
+                )
+    return ""
 
 
 def _factors(values: Mapping[str, Any]) -> dict[str, str]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from beliefnest.errors import ScenarioError
 from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.believed import Believed
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.naming import Naming
 from beliefnest.scenarios.prose_reading import story_sentences
@@ -77,9 +78,7 @@ def _events(
     believed = asked.believed
     if not options or believed is None:
         return
-    at = believed.thing
-    things = [at] if isinstance(at, str) else [naming.objects.get(at), naming.written.get(at)]
-    wanted = [each.replace("_", " ").casefold() for each in things if each]
+    wanted = names_asked_for(believed, naming)
     events: list[tuple[str, str]] = []
     leavings: list[str | None] = []
     for sentence in story_sentences(text.partition("\n\n")[2]):
@@ -99,6 +98,13 @@ def _events(
     yield "first_leaving", next(iter(leavings), None)
     yield "last_leaving", next(reversed(leavings), None)
     yield "own_event", next(reversed(own), None)
+
+
+def names_asked_for(believed: Believed, naming: Naming) -> list[str]:
+    """Return the names of the thing that a question is about, in small letters."""
+    at = believed.thing
+    things = [at] if isinstance(at, str) else [naming.objects.get(at), naming.written.get(at)]
+    return [each.replace("_", " ").casefold() for each in things if each]
 
 
 def _greatest(places: Mapping[str, list[int]], key: Callable[[list[int]], int]) -> str | None:
