@@ -17,7 +17,13 @@ from beliefnest.studies.items.functional.certifying import (
     certified,
     chance_of,
 )
-from beliefnest.studies.items.functional.pairing import FUNCTIONAL, by_order, paired, plot_pairs
+from beliefnest.studies.items.functional.pairing import (
+    FUNCTIONAL,
+    by_order,
+    check_model,
+    paired,
+    plot_pairs,
+)
 from beliefnest.studies.items.functional.siblings import check_functional, families_of
 from beliefnest.studies.study import Study
 
@@ -43,6 +49,7 @@ def run_functional(options: ItemsOptions) -> int:
     if others := there - own:
         raise InputError(f"{options.folder} holds other files ({min(others)}); name another folder")
     folder = options.folder
+    check_model(folder, model)
     with progress_on(options.study.stem) as say:
 
         def phase(what: str) -> OnStudyProgress:

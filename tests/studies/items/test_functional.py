@@ -114,6 +114,17 @@ def test_a_model_answers_and_plays_and_a_figure_is_drawn(tmp_path, capsys):
     assert gaps[1].difference == told["pairs"][-1]["difference"]
 
 
+@pytest.mark.parametrize("options", [[], ["--model", "chance"]])
+def test_figures_of_a_model_are_not_replaced(tmp_path, capsys, options):
+    content = json.dumps({"certificates": [], "model": "first-option", "pairs": []})
+    (tmp_path / "functional.json").write_text(content, encoding="utf-8")
+    study = str(EXAMPLES / "study.yaml")
+    assert run_command_line(["items", study, "-o", str(tmp_path), "--functional", *options]) == 2
+    words = f"add `--model first-option`, or name another folder: `-o {tmp_path}-2`"
+    assert words in " ".join(capsys.readouterr().err.split())
+    assert (tmp_path / "functional.json").read_text("utf-8") == content
+
+
 @pytest.mark.parametrize("option", ["--report", "--verify"])
 def test_options_of_sets_are_refused(tmp_path, capsys, option):
     study = str(EXAMPLES / "study.yaml")

@@ -185,7 +185,7 @@ def test_the_gap_to_acting_stands_at_its_order(tmp_path, capsys):
     assert "has episodes of 'first-option', and --models is chance" in capsys.readouterr().err
     (tmp_path / "functional.json").write_text('{"certificates": []}', encoding="utf-8")
     assert run_command_line([*command, "--models", "chance"]) == 2
-    assert "--functional --model M" in capsys.readouterr().err
+    assert f"{tmp_path} has no model: run `beliefnest items STUDY" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from beliefnest.studies.clusters import exchange_p, rate_interval
 from beliefnest.studies.items.functional.certifying import Certificate
 from beliefnest.studies.items.functional.siblings import TaskFamily
 from beliefnest.studies.study import Study
+from beliefnest.world.texts import quoted
 
 if TYPE_CHECKING:  # matplotlib is optional, and imported when something is plotted.
     from matplotlib.figure import Figure
@@ -190,8 +191,24 @@ class OrderGap(msgspec.Struct):
 
 
 class _FunctionalForm(msgspec.Struct):
-    model: str
-    pairs: list[OrderGap]
+    model: str = ""
+    pairs: list[OrderGap] = []
+
+
+def check_model(folder: Path, model: str | None) -> None:
+    """Refuse to replace the figures that a folder has of another model.
+
+    Raises:
+        InputError: It has some, and `model` is not theirs; or they cannot be read.
+    """
+    if not (folder / FUNCTIONAL).exists():
+        return
+    there = _read(folder).model
+    if there not in ("", model):
+        raise InputError(
+            f"{folder} has figures of {quoted(there)}, which this would replace; add "
+            f"`--model {there}`, or name another folder: `-o {folder}-2`"
+        )
 
 
 def read_gaps(folder: Path) -> tuple[str, dict[int, OrderGap]]:
@@ -200,14 +217,24 @@ def read_gaps(folder: Path) -> tuple[str, dict[int, OrderGap]]:
     Raises:
         InputError: The folder holds none, or no model was asked.
     """
-    again = "write it with `beliefnest items STUDY -o DIR --functional --model M`"
+    results = _read(folder)
+    if not results.model:
+        raise InputError(
+            f"{folder} has no model: run `beliefnest items STUDY -o {folder} --functional "
+            "--model M`"
+        )
+    return results.model, {each.order: each for each in results.pairs if not each.family}
+
+
+def _read(folder: Path) -> _FunctionalForm:
     file = folder / FUNCTIONAL
+    write = f"write it with `beliefnest items STUDY -o {folder} --functional --model M`"
     if not file.is_file():
-        raise InputError(f"there is no {file}; {again}")
+        raise InputError(f"there is no {file}; {write}")
+    again = f"delete it, and {write}"
     content = read_json(file, again)
     checked_form(content, _FunctionalForm, file, again)
-    results = msgspec.convert(content, _FunctionalForm)
-    return results.model, {each.order: each for each in results.pairs if not each.family}
+    return msgspec.convert(content, _FunctionalForm)
 
 
 def plot_pairs(
