@@ -129,6 +129,26 @@ def test_wrong_input_is_refused(options, words, tmp_path, capsys):
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("damaged", "words"),
+    [
+        (lambda lines: [lines[0], lines[1][:90], *lines[2:]], "items.jsonl:2 cannot be read"),
+        (lambda lines: [*lines[:-1], lines[-1][:90]], "items.jsonl:5 cannot be read"),
+        (lambda lines: lines[1:], "has 4 items, and set.json says 5"),
+        (lambda lines: [*lines[1:], lines[0]], "its digest is another"),
+    ],
+)
+def test_a_damaged_set_is_not_asked(damaged, words, tmp_path, capsys):
+    ItemSet("own", ITEMS, ()).write(tmp_path / "set")
+    file = tmp_path / "set" / "items.jsonl"
+    file.write_text("\n".join(damaged(file.read_text(encoding="utf-8").splitlines())), "utf-8")
+    command = ["items", str(tmp_path / "set"), "--models", "chance", "-o", str(tmp_path / "out")]
+    assert run_command_line(command) == 2
+    told = capsys.readouterr().err
+    assert words in told and "--verify" in told
+    assert not (tmp_path / "out").exists()
+
+
 def answer(participant, number, response, **values):
     """Return a row of the page for participants."""
     row = {"participant": participant, "cell": f"scene {number}", "question": "1.1"}

@@ -4,7 +4,13 @@ import hashlib
 import json
 from collections.abc import Mapping
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.files import decode_json, read_regular
 
 _BESIDE = files("beliefnest.studies.items") / "beside"
 _CROISSANT = "http://mlcommons.org/croissant/1.0"
@@ -140,6 +146,30 @@ def croissant(described: Mapping[str, Any], items: bytes) -> bytes:
         ],
     }
     return f"{json.dumps(metadata, indent=2)}\n".encode()
+
+
+class _FileForm(msgspec.Struct):
+    sha256: str
+
+
+class _CroissantForm(msgspec.Struct):
+    distribution: tuple[_FileForm]
+
+
+def stated_digest(folder: Path) -> str | None:
+    """Return the SHA-256 digest of `items.jsonl` that a set states; None: it has no Croissant file.
+
+    Raises:
+        InputError: The Croissant file is damaged.
+        OSError: It cannot be read.
+    """
+    file = folder / "croissant.json"
+    try:
+        return decode_json(read_regular(file), _CroissantForm).distribution[0].sha256
+    except FileNotFoundError:
+        return None
+    except msgspec.MsgspecError as error:
+        raise InputError(f"{file} is damaged: {error}; make the set anew") from None
 
 
 def _field(name: str, kind: str) -> dict[str, Any]:

@@ -10,14 +10,16 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.messages import Answer, Finish
-from beliefnest.scenarios.record_forms import read_lines
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.items.asking import judged_answer
 from beliefnest.studies.items.cells import AnsweredItem
-from beliefnest.studies.items.exports import sha256
+from beliefnest.studies.items.exports import sha256, stated_digest
 from beliefnest.studies.items.item_set import read_description
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.world.texts import quoted
+from beliefnest.world.words import counted
+
+_MEND = "restore the set, or see what differs: `beliefnest items STUDY -o SET --verify`"
 
 
 class ItemResult(msgspec.Struct, frozen=True):
@@ -69,19 +71,37 @@ class PublishedSet:
         """Read the set of a folder.
 
         Raises:
-            InputError: The folder holds no whole set.
+            InputError: The folder holds no whole set, or its items are not those that were written.
         """
         description, file = read_description(folder), folder / "items.jsonl"
-        items = tuple(read_lines(file, ItemRecord))
+        try:
+            content = read_regular(file)
+            items = tuple(_items(content, file))
+            stated = stated_digest(folder)
+        except OSError as error:
+            raise InputError(f"{error.filename}: {error.strerror}; {_MEND}") from None
+        wanted, own = description.items.get("public", 0), sha256(content)
+        if len(items) != wanted:
+            there = counted(len(items), "item")
+            raise InputError(f"{file} has {there}, and set.json says {wanted}; {_MEND}")
         if not items:
             raise InputError(f"{file} has no items; make the set anew")
-        digest = sha256(read_regular(file))
-        return PublishedSet(description.name, description.version, digest, items)
+        if stated not in {None, own}:
+            raise InputError(f"{file} is not as it was written: its digest is another; {_MEND}")
+        return PublishedSet(description.name, description.version, own, items)
 
     @property
     def choices(self) -> tuple[ItemRecord, ...]:
         """Return the items with options, which alone can be judged without their nests."""
         return tuple(each for each in self.items if each.options)
+
+
+def _items(content: bytes, file: Path) -> Iterator[ItemRecord]:
+    for number, line in enumerate(content.splitlines(), 1):
+        try:
+            yield decode_json(line, ItemRecord)
+        except msgspec.MsgspecError as error:
+            raise InputError(f"{file}:{number} cannot be read: {error}; {_MEND}") from None
 
 
 def results_of(items: PublishedSet, rows: Iterable[Mapping[str, Any]]) -> bytes:
