@@ -23,6 +23,7 @@ from beliefnest.studies.items.functional.pairing import OrderGap, read_gaps
 from beliefnest.studies.items.people import people_cells
 from beliefnest.studies.items.results import PublishedSet, check_results, results_of
 from beliefnest.studies.result import StudyResult
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.suite_playing import play_suite
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
@@ -44,12 +45,14 @@ def run_models(options: ItemsOptions) -> int:
     if not all(models) or len({*models}) < len(models):
         raise InputError(f"--models is {options.models!r}; name each model once, with commas")
     check_readers(models)
+    _check_same_set(items, folder)
     gaps = _gaps(options.gap or (), models)
     people, notes = (
         people_cells(items.name, items.choices, options.people) if options.people else ([], [])
     )
     cells: list[Keyed] = [*item_cells(items.name, items.choices, models), *people]
-    about = {"suites": [items.name], "models": models, "version": items.version}
+    of_set = {"version": items.version, "digest": items.digest}
+    about = {"suites": [items.name], "models": models, **of_set}
     limits = RunLimits(options.max_tokens, options.max_cost)
     with playing(items.name, folder) as (place, on_progress):
         result = play_suite(
@@ -82,6 +85,23 @@ def run_verify_results(options: ItemsOptions) -> int:
     report = {"results": str(file), "faults": list(checked.faults), "missing": checked.missing}
     _print(options, report, checked.rows, [*lines, *([] if lines else [f"{file}: sound"])])
     return int(bool(lines))
+
+
+def _check_same_set(items: PublishedSet, folder: Path) -> None:
+    """Raise InputError if a folder has results of another set."""
+    place = StudyFolder(folder, ITEM_KIND)
+    if not place.has_plan:
+        return
+    before = place.plan()
+    # Folders of earlier versions have no digest.
+    there = (*before["suites"], before["version"], before.get("digest", items.digest))
+    own = (items.name, items.version, items.digest)
+    if there != own:
+        theirs, ours = (f"{name} {version} ({key[:8]})" for name, version, key in (there, own))
+        raise InputError(
+            f"{folder} has results of the set {theirs}, and this one is {ours}; name another "
+            f"folder (with a copy of {folder / 'answers'}, no question is asked twice)"
+        )
 
 
 def _gaps(folders: Sequence[Path], models: Sequence[str]) -> _Gaps:

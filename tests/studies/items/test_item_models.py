@@ -149,6 +149,22 @@ def test_a_damaged_set_is_not_asked(damaged, words, tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize(
+    "other",
+    [ItemSet("own", ITEMS[:3], ()), ItemSet("trial", ITEMS, ()), ItemSet("own", ITEMS, (), 0, "2")],
+)
+def test_results_of_another_set_are_not_replaced(other, tmp_path, capsys):
+    ItemSet("own", ITEMS, ()).write(tmp_path / "set")
+    other.write(tmp_path / "other")
+    options = ["--models", "first-option", "-o", str(tmp_path / "out"), "--jobs", "1"]
+    assert run_command_line(["items", str(tmp_path / "set"), *options]) == 0
+    before = (tmp_path / "out" / "results.jsonl").read_bytes()
+    assert run_command_line(["items", str(tmp_path / "other"), *options]) == 2
+    told = capsys.readouterr().err
+    assert "the set own 1.0.0 (" in told and f"this one is {other.name} {other.version} (" in told
+    assert (tmp_path / "out" / "results.jsonl").read_bytes() == before
+
+
 def answer(participant, number, response, **values):
     """Return a row of the page for participants."""
     row = {"participant": participant, "cell": f"scene {number}", "question": "1.1"}
