@@ -21,7 +21,12 @@ from beliefnest.studies.items.asking import check_readers
 from beliefnest.studies.items.cells import ITEM_KIND, item_cells
 from beliefnest.studies.items.functional.pairing import OrderGap, read_gaps
 from beliefnest.studies.items.people import people_cells
-from beliefnest.studies.items.results import PublishedSet, check_results, results_of
+from beliefnest.studies.items.results import (
+    PublishedSet,
+    check_results,
+    results_of,
+    with_others,
+)
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.suite_playing import play_suite
@@ -59,8 +64,10 @@ def run_models(options: ItemsOptions) -> int:
             place, ITEM_KIND, cells, about, models, on_progress, limits, options.jobs
         )
     write_tables(result)
-    replace_file(folder / RESULTS, results_of(items, result.rows))
-    lines = [*notes, *_left_out(items), *_figure(result, folder), f"results: {folder / RESULTS}"]
+    results = folder / RESULTS
+    before = results.read_bytes() if results.is_file() else b""
+    replace_file(results, with_others(results_of(items, result.rows), before))
+    lines = [*notes, *_left_out(items), *_figure(result, folder), f"results: {results}"]
     _print(options, {"folder": str(folder)}, result.rows, lines, gaps)
     check_all_played(result)
     return 0

@@ -110,6 +110,23 @@ def test_results_are_checked_against_their_set(answered, capsys):
     assert [each["right"] for each in report["models"] if "order" not in each] == [0, 0]
 
 
+def test_lines_of_others_stay_in_the_file_of_results(tmp_path, capsys):
+    ItemSet("own", ITEMS, ()).write(tmp_path / "set")
+    results = tmp_path / "out" / "results.jsonl"
+    command = ["items", str(tmp_path / "set"), "-o", str(tmp_path / "out"), "--jobs", "1"]
+    assert run_command_line([*command, "--models", "first-option"]) == 0
+    own = results.read_text(encoding="utf-8")
+    theirs = own.replace('"first-option"', '"theirs"').rstrip("\n")
+    results.write_text(f"{own}{theirs}\n{{not json", encoding="utf-8")
+    for _ in range(2):
+        assert run_command_line([*command, "--models", "first-option"]) == 0
+        assert results.read_text(encoding="utf-8") == f"{own}{theirs}\n{{not json\n"
+    assert run_command_line([*command, "--models", "chance"]) == 0
+    lines = results.read_text(encoding="utf-8")
+    assert lines.endswith(f"{own}{theirs}\n{{not json\n")
+    assert lines.count('"chance"') == len(ITEMS)
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

@@ -115,6 +115,25 @@ def results_of(items: PublishedSet, rows: Iterable[Mapping[str, Any]]) -> bytes:
     return b"".join(msgspec.json.encode(each) + b"\n" for each in lines)
 
 
+def with_others(results: bytes, before: bytes) -> bytes:
+    """Return results, followed by all lines of a file that they do not replace, as they are.
+
+    A result replaces those of the same set, item and model.
+    """
+    own = {_replaced(line) for line in results.splitlines()}
+    others = (line for line in before.split(b"\n") if line.strip())
+    return results + b"".join(line + b"\n" for line in others if _replaced(line) not in own)
+
+
+def _replaced(line: bytes) -> tuple[str, str, str] | bytes:
+    """Return what a line is the result of; if it is no result, the line."""
+    try:
+        result = decode_json(line, ItemResult)
+    except msgspec.MsgspecError:
+        return line
+    return result.digest, result.id, result.model
+
+
 @dataclass(frozen=True, slots=True)
 class CheckedResults:
     """Result of checking a file of results.
