@@ -11,6 +11,7 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.content import ScenarioWarning
+from beliefnest.studies.items.balance import balanced_names
 from beliefnest.studies.items.item_set import ItemSet
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.report import report_of, shortcut_rows
@@ -436,9 +437,7 @@ def test_scenes_are_chosen_on_which_shortcuts_are_at_chance(folder):
     scenario = str(folder / "boxes.yaml")
     values = {"to": ["left", "right"]}
     balanced = bn.Study([scenario], variations=values, balance=["lower_order"], conditions=[1, 2])
-    with pytest.raises(
-        InputError, match=r"lower_order is right in \d+ of \d+ questions of order 2"
-    ):
+    with pytest.raises(InputError, match=r"lower_order: \d+ of \d+ at order 2 in boxes; draw"):
         balanced.plan()
     reality = bn.Study([scenario], variations=values, balance=["reality"])
     rows = {
@@ -455,6 +454,18 @@ def test_unknown_shortcuts_are_refused(folder):
         ScenarioError, match=r"wrong.yaml:3: balance.*'realty'.*did you mean 'reality'"
     ):
         bn.Study.load(folder / "wrong.yaml")
+
+
+@pytest.mark.extra("scipy")
+def test_the_family_in_which_a_shortcut_is_right_too_often_is_named():
+    pytest.importorskip("scipy")
+    families = ("other", "other", "tip-off", "tip-off", "tip-off")
+    made = {
+        str(number): [invented(family=family, shortcuts={"last": "box"}, order=2)]
+        for number, family in enumerate(families)
+    }
+    with pytest.raises(InputError, match=r"off: last: 3 of 3 at order 2 in tip-off; draw"):
+        balanced_names(made, ["last"], 0)
 
 
 def test_shortcuts_that_learn_cannot_be_balanced(folder):

@@ -107,13 +107,20 @@ def _impossible(
     made: Mapping[str, Sequence[ItemRecord]], dimensions: Sequence[tuple[str, int]]
 ) -> str:
     every = [each for items in made.values() for each in items]
-    furthest = sorted(dimensions, key=lambda each: -abs(_excess(every, *each)))[:_MOST_TOLD]
+    families: dict[str, list[ItemRecord]] = defaultdict(list)
+    for each in every:
+        families[each.family].append(each)
+    totals = {each: total for each in dimensions if abs(total := _excess(every, *each)) > _EXACT}
     rates = []
-    for name, order in furthest:
-        answers = list(_answers(every, name, order))
+    for name, order in sorted(totals, key=lambda each: -abs(totals[each]))[:_MOST_TOLD]:
+        excess = {of: _excess(items, name, order) for of, items in families.items()}
+        # The family that has most of the excess, in its direction.
+        worst = max(excess, key=lambda of: excess[of] * totals[name, order])
+        answers = list(_answers(families[worst], name, order))
         right = sum(answer == each.right for each, answer in answers)
-        rates.append(f"{name} is right in {right} of {len(answers)} questions of order {order}")
+        rates.append(f"{name}: {right} of {len(answers)} at order {order} in {worst}")
     return (
-        f"no part of the variations has these shortcuts at chance; the furthest: {'; '.join(rates)}"
+        "no part of the variations has these shortcuts at chance; right answers where they are "
+        f"furthest off: {'; '.join(rates)}"
         "; draw more variations, vary what the answers depend on, add conditions, or name fewer"
     )
