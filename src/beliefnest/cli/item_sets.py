@@ -10,7 +10,12 @@ from rich.table import Table
 from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import ItemsOptions
 from beliefnest.errors import InputError
-from beliefnest.studies.items.item_set import ItemSet, check_folder, read_description
+from beliefnest.studies.items.item_set import (
+    FIRST_VERSION,
+    ItemSet,
+    check_folder,
+    read_description,
+)
 from beliefnest.studies.items.parquet import parquet_differences, write_parquet_of
 from beliefnest.studies.items.report import report_of
 from beliefnest.studies.study import Study
@@ -28,7 +33,8 @@ def run_make(options: ItemsOptions) -> int:
     names = {"held_out": options.held_out, "version": options.set_version}
     names |= {"changes": options.changes}
     own = {name: value for name, value in names.items() if value is not None}
-    check_folder(options.folder, options.held_out or 0.0)
+    version = FIRST_VERSION if options.set_version is None else options.set_version
+    check_folder(options.folder, options.held_out or 0.0, version)
     made, scenes, compared, differing = _made(options, {"name": options.study.stem, **own})
     made.write(options.folder)
     if options.parquet:

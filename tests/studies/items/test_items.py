@@ -292,6 +292,10 @@ def test_a_version_names_one_content(folder, made, tmp_path):
         other.write(tmp_path / "set")
     assert made.differences(tmp_path / "set") == []
     replace(other, version="1.1.0").write(tmp_path / "set")
+    for version in ("1.0.0", "1.0.9", "v1"):
+        with pytest.raises(InputError, match=rf"holds version 1\.1\.0, and {version} is below"):
+            replace(made, version=version).write(tmp_path / "set")
+    replace(made, version="1.10").write(tmp_path / "set")
 
 
 def test_items_that_differ_in_names_stay_together(made):

@@ -21,6 +21,7 @@ from beliefnest.world.words import counted, listed
 
 FORM = "beliefnest items 2"
 """Mark of folders of this version."""
+FIRST_VERSION = "1.0.0"
 _ITEMS = "items.jsonl"
 _SET = "set.json"
 _WHOLE = 16**16
@@ -66,20 +67,34 @@ def read_description(folder: Path) -> SetDescription:
     return description
 
 
-def check_folder(folder: Path, held_out: float) -> None:
-    """Raise InputError if a set with a held-out share cannot be written into a folder."""
+def check_folder(folder: Path, held_out: float, version: str) -> None:
+    """Raise InputError if a set with a held-out share and a version cannot be written there."""
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file; name a folder")
     if not folder.is_dir() or not any(folder.iterdir()):
         return
     if not (folder / _SET).is_file():
         raise InputError(f"{folder} is not empty and holds no set of items; name another")
-    before = read_description(folder).held_out
-    if before != held_out:
+    there = read_description(folder)
+    if there.held_out != held_out:
         raise InputError(
-            f"{folder} holds a set with held_out {before:g}, and {held_out:g} would make other "
-            "items public; give the same share, or name another folder"
+            f"{folder} holds a set with held_out {there.held_out:g}, and {held_out:g} would make "
+            "other items public; give the same share, or name another folder"
         )
+    if _numbers(version) < _numbers(there.version):
+        raise InputError(
+            f"{folder} holds version {there.version}, and {version} is below it; give a new "
+            "--set-version above it, or name another folder"
+        )
+
+
+def _numbers(version: str) -> list[int]:
+    """Return the numbers with which a version begins, without zeros at their end."""
+    begins = re.match(r"v?([\d._-]*)", version)
+    numbers = [int(each) for each in re.findall(r"\d+", begins[0] if begins else "")]
+    while numbers and not numbers[-1]:
+        numbers.pop()
+    return numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +119,7 @@ class ItemSet:
     items: tuple[ItemRecord, ...]
     dropped: tuple[DroppedQuestion, ...]
     held_out: float = 0.0
-    version: str = "1.0.0"
+    version: str = FIRST_VERSION
     changes: str = ""
     made_with: Mapping[str, str] = field(default_factory=lambda: {"beliefnest": VERSION})
 
@@ -182,11 +197,11 @@ class ItemSet:
         """Write the set into a folder.
 
         Raises:
-            InputError: The folder holds something else, a set with another held-out share, or
-                other items of the same version.
+            InputError: The folder holds something else, a set with another held-out share, a later
+                version, or other items of the same version.
         """
         place, files = Path(folder), self.files()
-        check_folder(place, self.held_out)
+        check_folder(place, self.held_out, self.version)
         if (place / _SET).is_file() and read_description(place).version == self.version:
             names = [name for name in files if name.endswith(_ITEMS) and (place / name).exists()]
             for line in (line for name in names for line in _compared(place, name, files[name])):
