@@ -227,7 +227,6 @@ def test_words_about_another_thing_excuse_nothing(tmp_path):
         ("the red_box", 0),
         (["red box", "the red box"], 0),
         ("the box", 1),
-        ("not in the red box", 1),
     ],
 )
 def test_labels_name_a_place_in_their_own_words(tmp_path, label, wrong):
@@ -241,6 +240,47 @@ def test_labels_name_a_place_in_their_own_words(tmp_path, label, wrong):
         file.write_text(json.dumps({**row, "target": label}), encoding="utf-8")
         done = audit(read_published(file))
         assert (done.items, len(done.wrong), done.unread) == (1, wrong, ())
+
+
+WORDED = """\
+Lea will look in the red box, because she did not see Noah move it to the drawer.
+the red box, not the blue box
+Lea will look in the red box since she never saw it moved.
+She thinks it's still in the red box
+In the red box rather than the drawer
+where she put it: the red box
+A) red box"""
+OPEN = """\
+In the red one
+box
+the box that is red
+The red box (she doesn't know about the drawer)
+Not in the drawer, but in the red box
+red box; the drawer is where it really is
+It was moved to the drawer, but Lea does not know.
+It is in the drawer since Noah moved it, but Lea will look in the red one.
+The drawer is not where Lea will look.
+Anywhere but in the drawer
+where she left it
+not in the drawer"""
+
+
+def test_right_labels_are_never_wrong_for_their_words(tmp_path):
+    """A label that names no one place without doubt is not read."""
+    told = (
+        "Lea and Noah entered the den. The pear is in the red box. The nut is in the blue box. "
+        "The fig is in the drawer. Lea left the den. Noah moved the pear to the drawer."
+    )
+    wrong = ["The drawer", "Lea will look in the drawer, because it is there.", "the blue box"]
+    labels = [*WORDED.splitlines(), *wrong, *OPEN.splitlines()]
+    asked = "Where will Lea look for the pear?"
+    rows = [{"story": told, "question": asked, "answer": each} for each in labels]
+    file = tmp_path / "rows.json"
+    file.write_text(json.dumps(rows), encoding="utf-8")
+    done = audit(read_published(file))
+    assert [each.row for each in done.wrong] == [8, 9, 10]
+    assert (done.items, done.undetermined, len(done.unread)) == (10, (), 12)
+    assert "has the answer 'In the red one', which does not name one" in done.unread[0].faults[0]
 
 
 def test_sentences_that_are_not_read_are_named(tmp_path, capsys):

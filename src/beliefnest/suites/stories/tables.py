@@ -34,6 +34,19 @@ _LISTS = ("data", "rows", "items", "examples")
 _BARE = ("story", "question", "answer")
 _SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z0-9“\"])")
 _LETTER = re.compile(r"\(?([A-Z])[).:]?(?:\s.*)?", re.DOTALL)
+_NUMBER = re.compile(r"^\(?[A-Za-z0-9][).:]\s+")
+_REASON = re.compile(r",?\s+(?:because|since|rather than|instead of)\s|(?:,|\band)\s+not\s", re.I)
+"""Start of a reason or of what is meant not, after the main clause of an answer."""
+_TURN = re.compile(
+    r"\b(?:so|but|yet|however|therefore|hence|thus|(?:is|will) not)\b|[;.:?!]\s*\w", re.IGNORECASE
+)
+"""Sign of a further clause, which may give another answer."""
+_PLAIN = re.compile(
+    "will|would|ll|is|s|looks?|looking|search|searches|go|goes|checks?|opens?|find|thinks?|"
+    "believes?|expects|says|answer|she|he|they|it|her|his|their|you|that|to|be|for|first|still|"
+    "inside|into|at|on|of|from|where|put|left|same"
+)
+"""Words of answers beside the container that change nothing of it."""
 
 _Row = Mapping[str, Any]
 
@@ -190,29 +203,40 @@ def _expected(answers: Sequence[str], story: Story, question: Question) -> str |
     """Return the one answer of a row, as the story names it.
 
     Raises:
-        InputError: Answers name several places.
+        InputError: Answers name several places, or none without doubt.
     """
+    rooms = {_bare(room): room for room in story.rooms}
+    for room in (rooms[_bare(each)] for each in answers if _bare(each) in rooms):
+        raise InputError(f"has the answer {quoted(room)}, a room; give the container in it")
     if question.door is not None or question.sign is not None:
         named = dict.fromkeys(a.strip().casefold() if question.door else a for a in answers)
     else:
-        named = dict.fromkeys(_named(each.strip(), story) for each in answers)
-    rooms = {_bare(room): room for room in story.rooms}
-    for room in (rooms[_bare(each)] for each in named if _bare(each) in rooms):
-        raise InputError(f"has the answer {quoted(room)}, a room; give the container in it")
+        named = dict.fromkeys(_named(each.strip(), story, question) for each in answers)
     if len(named) > 1:
         raise InputError(f"has several answers, {', '.join(map(quoted, named))}; give one")
     return next(iter(named))
 
 
-def _named(answer: str, story: Story) -> str:
-    """Return the one container that an answer names; the answer itself if it names none."""
-    words = f" {_bare(answer)} "
+def _named(answer: str, story: Story, question: Question) -> str:
+    """Return the container that the main clause of an answer names.
+
+    Raises:
+        InputError: It names none or several, or has words that may change what it says.
+    """
+    main, *rest = _REASON.split(answer, maxsplit=1)
+    words = f" {_bare(_NUMBER.sub('', main))} "
     names_of_containers = {_bare(place.container): place.container for place in story.places}
     mentioned = [each for each in names_of_containers if f" {each} " in words]
     # Of `red box` and `box`, the longer name is meant.
     whole = [a for a in mentioned if not any(a != b and f" {a} " in f" {b} " for b in mentioned)]
-    denied = re.search(r"\b(not|no|never)\b|n't\b", answer)
-    return names_of_containers[whole[0]] if len(whole) == 1 and not denied else answer
+    known = " ".join([*whole, *map(_bare, (*story.rooms, *question.believers, question.thing))])
+    others = {*words.split()} - {*known.split()}
+    if len(whole) != 1 or not all(map(_PLAIN.fullmatch, others)) or any(map(_TURN.search, rest)):
+        raise InputError(
+            f"has the answer {quoted(answer)}, which does not name one container of the story "
+            "without doubt; write its name alone"
+        )
+    return names_of_containers[whole[0]]
 
 
 def _bare(name: str) -> str:
