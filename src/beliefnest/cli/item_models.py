@@ -53,7 +53,9 @@ def run_models(options: ItemsOptions) -> int:
     _check_same_set(items, folder)
     gaps = _gaps(options.gap or (), models)
     people, notes = (
-        people_cells(items.name, items.choices, options.people) if options.people else ([], [])
+        people_cells(items.name, items.choices, items.held_out, options.people)
+        if options.people
+        else ([], [])
     )
     cells: list[Keyed] = [*item_cells(items.name, items.choices, models), *people]
     of_set = {"version": items.version, "digest": items.digest}

@@ -9,7 +9,10 @@ from beliefnest.cli.app import run_command_line
 from beliefnest.llm.messages import Answer
 from beliefnest.studies.items.asking import judged_answer, prompt_of
 from beliefnest.studies.items.item_set import ItemSet
+from beliefnest.studies.items.people import people_cells
 from beliefnest.studies.items.record import ItemRecord, item_id
+from beliefnest.studies.items.results import PublishedSet
+from beliefnest.world.words import counted
 
 MODEL = """
 from beliefnest.llm.messages import Answer
@@ -220,6 +223,24 @@ def test_people_stand_beside_models(tmp_path, capsys):
     assert {each["model"] for each in json.loads(capsys.readouterr().out)["models"]} == {
         "first-option"
     }
+
+
+def test_answers_to_items_that_are_held_out_are_told_as_such(tmp_path):
+    made = ItemSet("own", ITEMS, (), 0.5)
+    made.write(tmp_path / "set")
+    kept = [each.seed for each in made.parts["held-out"]]
+    items = PublishedSet.read(tmp_path / "set")
+    rows = [answer("7", each.seed, "box") for each in items.choices]
+    rows += [answer("7", each, "box") for each in (*kept, *kept, 9)]
+    file = tmp_path / "answers.json"
+    file.write_text(json.dumps(rows), encoding="utf-8")
+    cells, notes = people_cells(items.name, items.choices, items.held_out, [file])
+    assert len(cells) == len(items.choices)
+    hidden = counted(len(kept), "answer")
+    assert notes == [
+        f"not counted: {hidden} of people to items that are held out",
+        "not counted: 1 answer of people to no item of the set",
+    ]
 
 
 def test_the_gap_to_acting_stands_at_its_order(tmp_path, capsys):

@@ -1,6 +1,6 @@
 """Answers of participants to the items of a set, as cells beside those of models."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -74,7 +74,7 @@ class PersonItemCell:
 
 
 def people_cells(
-    suite: str, items: Sequence[ItemRecord], files: Sequence[Path]
+    suite: str, items: Sequence[ItemRecord], held_out: Collection[str], files: Sequence[Path]
 ) -> tuple[list[PersonItemCell], list[str]]:
     """Return a cell for each counted answer of a participant to an item, and notes about others.
 
@@ -83,6 +83,7 @@ def people_cells(
     Args:
         suite: Name of the set.
         items: Its items with options.
+        held_out: Ids of items that are held out.
         files: Files of answers of the study's page, or folders of such files.
 
     Raises:
@@ -98,8 +99,12 @@ def people_cells(
             "page of the study that made this set"
         )
     notes: list[str] = []
-    if left := len(real_answers) - len(own):
-        notes.append(f"not counted: {counted(left, 'answer')} of people to no item of the set")
+    left = {(each.participant, _id(each)) for each in real_answers if _id(each) not in by_id}
+    hidden = sum(item in held_out for _, item in left)
+    strange = len(left) - hidden
+    for count, what in ((hidden, "items that are held out"), (strange, "no item of the set")):
+        if count:
+            notes.append(f"not counted: {counted(count, 'answer')} of people to {what}")
     checked = [with_own_options(each, by_id[_id(each)].options) for each in own]
     sessions = counted_answers(checked, notes)
     cells = [

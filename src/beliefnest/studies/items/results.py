@@ -59,12 +59,14 @@ class PublishedSet:
         version: Its version.
         digest: SHA-256 of its `items.jsonl`.
         items: The items.
+        held_out: Ids of the items that are held out, as far as the folder has them.
     """
 
     name: str
     version: str
     digest: str
     items: tuple[ItemRecord, ...]
+    held_out: frozenset[str]
 
     @staticmethod
     def read(folder: Path) -> "PublishedSet":
@@ -77,6 +79,9 @@ class PublishedSet:
         try:
             content = read_regular(file)
             items = tuple(_items(content, file))
+            hidden = folder / "held-out" / "items.jsonl"
+            kept = _items(read_regular(hidden), hidden) if hidden.exists() else ()
+            held_out = frozenset(each.id for each in kept)
             stated = stated_digest(folder)
         except OSError as error:
             raise InputError(f"{error.filename}: {error.strerror}; {_MEND}") from None
@@ -88,7 +93,7 @@ class PublishedSet:
             raise InputError(f"{file} has no items; make the set anew")
         if stated not in {None, own}:
             raise InputError(f"{file} is not as it was written: its digest is another; {_MEND}")
-        return PublishedSet(description.name, description.version, own, items)
+        return PublishedSet(description.name, description.version, own, items, held_out)
 
     @property
     def choices(self) -> tuple[ItemRecord, ...]:
