@@ -388,6 +388,12 @@ def test_wrong_use_of_the_command(folder, tmp_path, capsys, arguments, told):
     assert told in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("options", [[], ["--models", "chance"], ["--verify"]])
+def test_a_missing_file_is_told_first(options, capsys):
+    assert run_command_line(["items", "nosuch.yaml", *options]) == 2
+    assert "there is no file or folder nosuch.yaml" in capsys.readouterr().err
+
+
 def test_a_folder_with_something_else_is_kept(folder, tmp_path, capsys):
     (tmp_path / "thesis.txt").write_text("mine", encoding="utf-8")
     assert run_command_line(["items", str(folder / "study.yaml"), "-o", str(tmp_path)]) == 2
