@@ -140,6 +140,9 @@ def _figure(result: StudyResult, folder: Path) -> Iterator[str]:
     except MissingExtraError as error:
         yield f"no figure: {error}"
         return
+    (axes,) = figure.axes
+    if axes.containers and axes.get_legend() is None:  # One model, which nothing else names.
+        axes.set_title(str(axes.containers[0].get_label()), fontsize="medium")
     for ending in ("svg", "pdf", "png"):
         figure.savefig(folder / f"accuracy.{ending}")
     yield f"figure: {folder / 'accuracy.svg'}, and as PDF and PNG"

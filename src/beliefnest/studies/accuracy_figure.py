@@ -108,11 +108,11 @@ def _draw_chance(
         colors="#333333",
         linestyles="dashed",
         linewidths=1,
-        label="chance" if in_legend else "",
+        label="chance level" if in_legend else "",
     )
     drawn.set_gid("chance")
     if not in_legend:
-        axes.annotate("chance", (ends[-1][1], levels[-1]), (3, 0), textcoords="offset points",
+        axes.annotate("chance level", (ends[-1][1], levels[-1]), (3, 0), textcoords="offset points",
             va="center", fontsize=7)  # fmt: skip
 
 

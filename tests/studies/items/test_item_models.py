@@ -280,6 +280,20 @@ def test_answers_of_people_that_do_not_fit_are_refused(rows, words, tmp_path, ca
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.extra("matplotlib")
+@pytest.mark.parametrize("models", ["first-option", "chance,first-option"])
+def test_a_figure_names_its_models_and_the_level_of_chance(models, tmp_path, capsys):
+    ItemSet("own", ITEMS[:2], ()).write(tmp_path / "set")
+    out = tmp_path / "out"
+    command = ["items", str(tmp_path / "set"), "-o", str(out), "--models", models, "--jobs", "1"]
+    mpl = pytest.importorskip("matplotlib")
+    with mpl.rc_context({"svg.fonttype": "none"}):
+        assert run_command_line(command) == 0
+    drawn = (out / "accuracy.svg").read_text(encoding="utf-8")
+    for name in ("chance level", *models.split(",")):
+        assert drawn.count(f">{name}</text>") == 1
+
+
 def test_a_model_that_fails_is_told(tmp_path, capsys):
     ItemSet("own", ITEMS, ()).write(tmp_path / "set")
     model = tmp_path / "broken.py"
