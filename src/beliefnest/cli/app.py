@@ -334,7 +334,9 @@ def list_installed(json: Json = False) -> None:
 @with_options(SuiteOptions)
 def suite(options: SuiteOptions) -> int:
     """Answer a file of questions from nests; compare with its answers, or with people."""
-    if options.name == "audit":
+    from beliefnest.suites import AUDIT
+
+    if options.name == AUDIT:
         from beliefnest.cli.audit import run_audit
 
         return run_audit(options)

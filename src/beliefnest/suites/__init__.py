@@ -5,10 +5,12 @@ from typing import Any
 from beliefnest.errors import UnknownNameError
 from beliefnest.importing import installed, installed_names, load
 
-__all__ = ["FILMS", "story_reader", "suite_names"]
+__all__ = ["AUDIT", "FILMS", "story_reader", "suite_names"]
 
 FILMS = "food-trucks"
 """Name of the suite of films."""
+AUDIT = "audit"
+"""Word in place of a suite: the labels of a published file are compared with its stories."""
 
 _GROUP = "beliefnest.suites"
 """Group of entry points by name of a suite of stories: functions of a file, and of the numbers of
@@ -32,5 +34,5 @@ def story_reader(name: str) -> Any:
         # It imports NumPy, and the list of suites is to be quick.
         from beliefnest.world.words import nearest_or_all
 
-        raise UnknownNameError(f"no suite {name!r}{nearest_or_all(name, suite_names())}")
+        raise UnknownNameError(f"no suite {name!r}{nearest_or_all(name, (*suite_names(), AUDIT))}")
     return load(entry, "suite")

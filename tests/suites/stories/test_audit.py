@@ -2,7 +2,9 @@
 
 import json
 
+import msgspec
 import pytest
+from tests.studies.items.building import invented
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.suites.stories.audit import audit, read_published
@@ -313,6 +315,7 @@ def test_sentences_that_are_not_read_are_named(tmp_path, capsys):
         (["empty.json", "--rows", "1"], "--rows is for suites"),
         (["empty.json", "--limit", "0"], "--limit is for suites"),
         (["empty.json", "--world", "nowhere"], "--world is for suites"),
+        (["items.jsonl"], "check it by `beliefnest items STUDY -o SET --verify`"),
         ([], "0 files are given"),
     ],
 )
@@ -320,6 +323,12 @@ def test_wrong_use(tmp_path, monkeypatch, capsys, arguments, told):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "empty.json").write_text("[]", encoding="utf-8")
     (tmp_path / "nothing.csv").touch()
+    (tmp_path / "items.jsonl").write_bytes(msgspec.json.encode(invented()) + b"\n")
     (tmp_path / "broken.json").write_text('[{"story": ', encoding="utf-8")
     assert run_command_line(["suite", "audit", *arguments]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_an_audit_is_named_where_a_suite_is_misspelt(capsys):
+    assert run_command_line(["suite", "audti", "rows.json"]) == 2
+    assert "'audit'" in capsys.readouterr().err

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from beliefnest.errors import InputError
 from beliefnest.files import read_regular
 from beliefnest.suites.stories.answer_check import is_told_of
 from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
@@ -71,7 +72,7 @@ def read_published(path: Path) -> ReadStories:
     """Read a file in the form of ToMi, of stories of one's own, or of a table.
 
     Raises:
-        InputError: The file cannot be read.
+        InputError: The file cannot be read, or is of a set of items.
     """
     try:
         start = read_regular(path)[:100_000].decode("utf-8", "replace").lstrip()
@@ -81,6 +82,11 @@ def read_published(path: Path) -> ReadStories:
     first = start.partition("\n")[0]
     if first.startswith("{") and '"events"' in first:
         return read_own(path)
+    if first.startswith("{") and all(f'"{each}":' in first for each in ("skeleton", "right")):
+        raise InputError(
+            f"{path} is of a set that `beliefnest items` wrote, and its answers are computed; "
+            "check it by `beliefnest items STUDY -o SET --verify`"
+        )
     numbered = first.startswith(("1 ", "1\t"))
     return read_tomi(path) if numbered and "\t" in start else read_table(path)
 
