@@ -110,8 +110,8 @@ def test_a_model_answers_and_plays_and_a_figure_is_drawn(tmp_path, capsys):
     assert (tmp_path / "out" / "functional.png").exists()
     assert json.loads((tmp_path / "out" / "functional.json").read_text("utf-8")) == told
     model, gaps = read_gaps(tmp_path / "out")
-    assert (model, [*gaps]) == ("first-option", [1])
-    assert gaps[1].difference == told["pairs"][-1]["difference"]
+    assert (model, [*gaps]) == ("first-option", [0])
+    assert gaps[0].difference == told["pairs"][-1]["difference"]
 
 
 @pytest.mark.parametrize("options", [[], ["--model", "chance"]])
