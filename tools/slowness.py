@@ -1,9 +1,10 @@
-"""How much longer this machine's processor takes now than when nobody else uses its hardware."""
+"""Slowness of the processors now: 1 as when nobody else uses the hardware, 2: twice as slow."""
 
+import sys
 from time import process_time
 
 _QUIET_S = 0.2
-"""Processor time of `_taken` on a quiet machine of two processors, of the kind that runs `.ci/run`."""
+"""Processor time of `_taken` on a quiet machine of the kind that runs `.ci/run`."""
 
 
 def _taken() -> float:
@@ -13,4 +14,4 @@ def _taken() -> float:
 
 
 if __name__ == "__main__":
-    print(round(max(1.0, min(_taken() for _ in range(3)) / _QUIET_S), 2))
+    sys.stdout.write(f"{max(1.0, min(_taken() for _ in range(3)) / _QUIET_S):.2f}\n")
