@@ -130,8 +130,8 @@ def _sayable(view: AgentView, mind: Imagination) -> dict[Claim, Position]:
 
     An agent whose goal is that others believe what is not so says that; any other says the truth.
     """
-    told = claims_of_mind(mind, list(view.brief.considered), lies=False)
-    true = {claim: claim.cell for claim in told}
+    truths = claims_of_mind(mind, list(view.brief.considered), lies=False)
+    true = {claim: claim.cell for claim in truths}
     places = {claim.item: at for claim, at in true.items()}
     wanted = {
         Claim.located(item, each.fact.store)

@@ -229,8 +229,8 @@ def _named(answer: str, story: Story, question: Question) -> str:
     mentioned = [each for each in names_of_containers if f" {each} " in words]
     # Of `red box` and `box`, the longer name is meant.
     whole = [a for a in mentioned if not any(a != b and f" {a} " in f" {b} " for b in mentioned)]
-    known = " ".join([*whole, *map(_bare, (*story.rooms, *question.believers, question.thing))])
-    others = {*words.split()} - {*known.split()}
+    names = " ".join([*whole, *map(_bare, (*story.rooms, *question.believers, question.thing))])
+    others = {*words.split()} - {*names.split()}
     if len(whole) != 1 or not all(map(_PLAIN.fullmatch, others)) or any(map(_TURN.search, rest)):
         raise InputError(
             f"has the answer {quoted(answer)}, which does not name one container of the story "
