@@ -71,6 +71,8 @@ def _made(options: ItemsOptions, names: Mapping[str, Any]) -> tuple[ItemSet, int
     study = Study.load(options.study)
     with progress_on(options.study.stem) as on_progress:
         made = study.items(**names, on_item=on_progress)
+        if not options.check_embedded:
+            return made, 0, 0, []
         return made, *study.check_items(made, options.check_embedded, on_progress)
 
 

@@ -479,10 +479,9 @@ class Study:
         Raises:
             InputError: The study is one of episodes, or reads claims with a model.
         """
-        if not isinstance(self._design, Design):
-            raise InputError("questions are those of scenarios; this study plays episodes")
-        refuse_claims(self._design.setting)
-        return ItemSpace(self._design, self._documents)
+        design = self._design_of_scenarios()
+        refuse_claims(design.setting)
+        return ItemSpace(design, self._documents)
 
     def check_items(
         self, items: ItemSet, scenes: int, on_item: OnItem | None = None
@@ -505,16 +504,18 @@ class Study:
         self, on_variation: Callable[[int, int], None] = lambda done, total: None
     ) -> tuple[Design, Sequence[Cell]]:
         """Return design and cells; raise InputError if the study plays episodes."""
-        design = self._design
-        if not isinstance(design, Design):
+        design, plan = self._design_of_scenarios(), self.plan(on_variation)
+        cells = [cell for cell in plan.cells if isinstance(cell, Cell)]
+        self._check_valid(plan)
+        return design, cells
+
+    def _design_of_scenarios(self) -> Design:
+        if not isinstance(self._design, Design):
             raise InputError(
                 "this study plays episodes, and questions are those of scenarios; give it to "
                 "`beliefnest study`, or to `beliefnest items --functional`"
             )
-        plan = self.plan(on_variation)
-        cells = [cell for cell in plan.cells if isinstance(cell, Cell)]
-        self._check_valid(plan)
-        return design, cells
+        return self._design
 
     def _write_plan(self, place: StudyFolder, plan: Mapping[str, Any]) -> None:
         """Write the inputs of the study and a plan into its folder."""
