@@ -11,7 +11,6 @@ from beliefnest.cli.options import ItemsOptions
 from beliefnest.errors import InputError
 from beliefnest.files import replace_file, replacing
 from beliefnest.plan.jobs import OnStudyProgress
-from beliefnest.studies.items.asking import check_readers
 from beliefnest.studies.items.functional.certifying import (
     Certificate,
     certified,
@@ -20,7 +19,7 @@ from beliefnest.studies.items.functional.certifying import (
 from beliefnest.studies.items.functional.pairing import (
     FUNCTIONAL,
     by_order,
-    check_model,
+    check_answerer,
     paired,
     plot_pairs,
 )
@@ -40,7 +39,6 @@ def run_functional(options: ItemsOptions) -> int:
     Raises:
         BeliefNestError: The study or a task is wrong, or an episode has no result.
     """
-    check_readers([] if options.model is None else [options.model])
     design = check_functional(Study.load(options.study).design, str(options.study))
     families, seeds, jobs = list(families_of(design)), design.seeds, options.jobs
     model, repeats = options.model, design.repeats
@@ -49,7 +47,7 @@ def run_functional(options: ItemsOptions) -> int:
     if others := there - own:
         raise InputError(f"{options.folder} holds other files ({min(others)}); name another folder")
     folder = options.folder
-    check_model(folder, model)
+    check_answerer(folder, model)
     with progress_on(options.study.stem) as say:
 
         def phase(what: str) -> OnStudyProgress:

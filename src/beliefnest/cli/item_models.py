@@ -17,7 +17,6 @@ from beliefnest.llm.budget import RunLimits
 from beliefnest.plan.cells import Keyed
 from beliefnest.scenarios.judging import unanswered_words
 from beliefnest.studies.counting import count_rows
-from beliefnest.studies.items.asking import check_readers
 from beliefnest.studies.items.cells import ITEM_KIND, item_cells
 from beliefnest.studies.items.functional.pairing import OrderGap, read_gaps
 from beliefnest.studies.items.people import people_cells
@@ -49,7 +48,6 @@ def run_models(options: ItemsOptions) -> int:
     models = [each.strip() for each in (options.models or "").split(",")]
     if not all(models) or len({*models}) < len(models):
         raise InputError(f"--models is {options.models!r}; name each model once, with commas")
-    check_readers(models)
     _check_same_set(items, folder)
     gaps = _gaps(options.gap or (), models)
     people, notes = (

@@ -8,7 +8,6 @@ from beliefnest.cli.console import Printed, print_report, progress_on, result_ta
 from beliefnest.cli.options import SearchItemsOptions
 from beliefnest.cli.playing import write_tables
 from beliefnest.plan.jobs import StudyProgress
-from beliefnest.studies.items.asking import check_readers
 from beliefnest.studies.items.search_folder import SearchReport, search_items
 from beliefnest.studies.items.searching import JudgedContrast
 from beliefnest.studies.result import StudyResult
@@ -22,7 +21,6 @@ def run_search(options: SearchItemsOptions) -> None:
     Raises:
         BeliefNestError: The study or the folder is wrong, or a model cannot be asked.
     """
-    check_readers([options.model, *([options.transfer] if options.transfer else [])])
     with progress_on(options.study.stem) as on_progress:
 
         def show(progress: StudyProgress) -> None:

@@ -9,7 +9,7 @@ import msgspec
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.plan.cells import digest
 from beliefnest.plan.terms import PlayStage
-from beliefnest.studies.items.asking import ItemAnswer, ask_item
+from beliefnest.studies.items.asking import ItemAnswer, ask_item, check_readers
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.suite_cells import SuiteKey, suite_kind
 
@@ -95,7 +95,11 @@ def item_cells(suite: str, items: Iterable[ItemRecord], models: Sequence[str]) -
         suite: Name of the set.
         items: The items.
         models: Names of the models.
+
+    Raises:
+        InputError: A model cannot read items.
     """
+    check_readers(models)
     asked = [(each, content_of(each)) for each in items if each.options]
     return [
         ItemCell(SuiteKey(suite, content, {"model": model, "seed": item.seed}), item)

@@ -17,6 +17,7 @@ from beliefnest.plan.cells import digest
 from beliefnest.plan.jobs import OnStudyProgress
 from beliefnest.plan.spending import spent_in
 from beliefnest.studies.checking import is_whole
+from beliefnest.studies.items.asking import check_readers
 from beliefnest.studies.items.cells import ITEM_KIND, ItemCell, item_cells
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.searching import (
@@ -112,6 +113,7 @@ def search_items(
         )
     limits = RunLimits(None, space.design.limits.cost if max_cost is None else max_cost)
     models = [model] if transfer is None else [model, transfer]
+    check_readers(models)
     terms = StudyFolder(folder, ITEM_KIND).terms(limits)
     for name in models:
         check_model(name, terms.surroundings, terms.connection())

@@ -13,6 +13,7 @@ from beliefnest.plan.jobs import OnStudyProgress
 from beliefnest.scenarios.record_forms import checked_form, read_json
 from beliefnest.studies.accuracy_figure import plot_accuracy
 from beliefnest.studies.clusters import exchange_p, rate_interval
+from beliefnest.studies.items.asking import check_readers
 from beliefnest.studies.items.functional.certifying import Certificate
 from beliefnest.studies.items.functional.siblings import TaskFamily
 from beliefnest.studies.study import Study
@@ -195,12 +196,18 @@ class _FunctionalForm(msgspec.Struct):
     pairs: list[OrderGap] = []
 
 
-def check_model(folder: Path, model: str | None) -> None:
-    """Refuse to replace the figures that a folder has of another model.
+def check_answerer(folder: Path, model: str | None) -> None:
+    """Check the model of a pair before anything is played.
+
+    Args:
+        folder: Folder of the certificates.
+        model: Name of the model; None: none is asked.
 
     Raises:
-        InputError: It has some, and `model` is not theirs; or they cannot be read.
+        InputError: The model cannot read questions, or the folder has figures of another one, or
+            such that cannot be read.
     """
+    check_readers([] if model is None else [model])
     if not (folder / FUNCTIONAL).exists():
         return
     there = _read(folder).model
