@@ -25,7 +25,8 @@ ENDLESS = {
     "an argument": "await goToPosition(bot, new Proxy({}, {ownKeys () { for (;;) {} }}))",
     "a then": "return {then () { for (;;) {} }}",
     "a listener": "bot.on('chat', () => { for (;;) {} }); bot.chat('x'); await waitTicks(bot, 5)",
-    "promises": "const again = () => Promise.resolve().then(again); await again()",
+    "jobs": "const again = () => { Promise.resolve().then(again) }; again(); "
+    "await new Promise(() => {})",
     "a generator": "for await (const x of (async function * () { for (;;) yield 1 })()) {}",
     "a console": "for (;;) console.log('x'.repeat(1000))",
     "dates": "for (;;) new Date()",
@@ -87,6 +88,19 @@ def test_what_computes_without_end_ends_by_its_fuel(nest: bn.Nest, name: str) ->
     error = _beside(nest, ENDLESS[name]).error
     assert error is not None
     assert (error.kind, error.message.partition(";")[0]) == ("fuel", FUEL)
+
+
+def test_what_fills_all_memory_says_so(nest: bn.Nest) -> None:
+    error = _beside(nest, "const again = () => Promise.resolve().then(again); await again()").error
+    assert error is not None
+    # Whether its memory or its computation is used up first, depends on the build.
+    assert error.kind in ("memory", "fuel")
+
+
+def test_a_thrown_null_is_an_error_as_long_as_there_is_memory(nest: bn.Nest) -> None:
+    error = _beside(nest, "throw null").error
+    assert error is not None
+    assert (error.kind, error.message) == ("error", "the program threw null")
 
 
 @pytest.mark.parametrize("name", OTHERS)

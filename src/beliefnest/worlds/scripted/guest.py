@@ -82,6 +82,11 @@ class Guest:
             main = engine.evaluate(text, "program.js")
             self._program = engine.call(self._functions["start"], [main, value])
 
+    @property
+    def is_full(self) -> bool:
+        """True if all its memory was in use at some time."""
+        return self._engine.size >= parts().limits.memory
+
     def result(self) -> dict[str, Any] | None:
         """Return how the program ended, read from the interpreter; None while it runs."""
         settled = self._engine.settled(self._program)

@@ -86,6 +86,11 @@ class Interpreter:
         self._machine.set_number("fuel", units)
 
     @property
+    def size(self) -> int:
+        """Size of the memory in bytes; it never shrinks."""
+        return self._machine.size
+
+    @property
     def depth(self) -> int:
         """Estimated bytes of the stack in use."""
         return self._machine.number("depth")

@@ -205,6 +205,7 @@ class JavaScriptProgram:
         self._guest.end("ended", "the program has ended")
         if outcome["ok"]:
             return
+        outcome = {**outcome, "full": self._guest.is_full}
         ended = outcome.get("ended")
         if isinstance(ended, GuestEndedError):
             fault = {"kind": ended.kind, "message": ended.message, "guestStack": ended.stack}

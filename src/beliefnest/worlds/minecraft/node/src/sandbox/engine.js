@@ -148,6 +148,11 @@ class Guest {
     return this.limits.fuel + GRACE - this.interpreter.fuel.value
   }
 
+  /** Return true if all memory of the guest was in use at some time. */
+  get isFull () {
+    return this.interpreter.size >= this.limits.memory
+  }
+
   /** Return true if no code of the guest is on the stack. */
   get idle () {
     return this.nesting === 0

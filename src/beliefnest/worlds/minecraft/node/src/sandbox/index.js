@@ -73,7 +73,7 @@ async function observe (session, guest, program, { fuel, memory, signal, names }
   signal?.removeEventListener('abort', abort)
   return {
     ok: outcome.ok,
-    error: describeOutcome(outcome, program, { fuel, memory }, guest.lastStatement, names, session.underWay),
+    error: describeOutcome({ ...outcome, full: guest.isFull }, program, { fuel, memory }, guest.lastStatement, names, session.underWay),
     lines: program.linesOf(guest.statements),
     log: session.log,
     unfinished: session.unfinished.map(({ what, statement }) => ({ what, line: program.statement(statement)?.line ?? null })),

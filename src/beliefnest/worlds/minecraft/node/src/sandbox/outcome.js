@@ -14,8 +14,9 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 
 /**
  * Describe the outcome of a run.
- * @param {{ok: boolean, error?: object, stray?: boolean, ended?: import('./engine').GuestEnded}} outcome outcome of
- *   the session; with `stray` the error is that of a promise without a handler
+ * @param {{ok: boolean, error?: object, stray?: boolean, ended?: import('./engine').GuestEnded, full: boolean}} outcome
+ *   outcome of the session; with `stray` the error is that of a promise without a handler, with `full` all memory was in
+ *   use
  * @param {{locate: function, callee: function, statement: function}} program
  * @param {{fuel: number, memory: number}} limits
  * @param {number} last number of the statement that was executed last; 0 for none
@@ -23,9 +24,9 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
  * @param {string[]} [under] names of calls that had not ended
  * @returns {?{message: string, line: ?number, column: ?number, skill: ?string, kind: string}}
  */
-function describeOutcome ({ ok, error, stray, ended }, program, limits, last, names = [], under = []) {
+function describeOutcome ({ ok, error, stray, ended, full }, program, limits, last, names = [], under = []) {
   if (ok) return null
-  const { message, skill, kind, reason, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
+  const { message, skill, kind, reason, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits, full)
   const { place, callee } = placeIn(stack, program)
   const { line, column } = place ?? program.statement(last) ?? { line: null, column: null }
   return { message: cut(named(message, callee) + nearName(message, names) + notAwaited(message, under), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind, ...(reason && { reason }) }
@@ -40,9 +41,9 @@ function ofEnd ({ kind, message, guestStack }, limits) {
   return { message: limitMessage(kind, limits) ?? message, skill: null, kind, stack: guestStack }
 }
 
-function ofError (error, limits) {
+function ofError (error, limits, full) {
   const { message, name, skill, stack, kind, reason } = plainError(error)
-  const limit = limitOf(name, message)
+  const limit = full && isThrownNull(error) ? 'memory' : limitOf(name, message)
   if (limit) return { message: limitMessage(limit, limits), skill: null, kind: limit, stack }
   const prefix = name === 'Error' || kind !== null || message.startsWith(`${name}:`) ? '' : `${name}: `
   return { message: prefix + message, skill, kind: kind ?? 'error', reason, stack }
@@ -61,6 +62,11 @@ function plainError (record) {
     reason: record?.reason === 'no_way' ? 'no_way' : null,
     stack: field('stack', '', MAX_STACK)
   }
+}
+
+// What the interpreter throws where there is no room even for its error about memory.
+function isThrownNull (record) {
+  return record?.thrown === true && record.name === 'object' && record.message === 'null'
 }
 
 function limitOf (name, message) {
