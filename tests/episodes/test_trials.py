@@ -58,7 +58,7 @@ def test_policies_end_as_in_episodes_of_their_own(rounds, round_ticks, wins):
     ]
     with Trials(played, seed=7) as trials:
         won = trials.won(policies)
-        # What was played before changes nothing.
+        # Independence of what was played before.
         assert trials.won(reversed(policies)) == won[::-1]
     own = []
     for policy in policies:

@@ -63,7 +63,7 @@ def run_items(options: ItemsOptions) -> int:
                 f"{_option(name)} belongs to {' or '.join(map(_command, others))}, and this is "
                 f"{_command(use.line)}; leave it out, or write the other"
             )
-    if options.out is None and not options.study.exists():
+    if not options.study.exists():
         raise InputError(f"there is no file or folder {options.study}; check its name")
     return use.run(options)
 

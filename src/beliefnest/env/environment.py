@@ -127,6 +127,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         )
         self._most = {**self._bounds.most, "cells": max(map(len, cells))}
         self._nested = nested_paths(options.nested, self.possible_agents, self.layout.agents)
+        own = ((agent,) for agent in self.possible_agents)
+        self._reads = [path_text(path) for path in (*own, *self._nested)]
         self._nested_of = {
             agent: tuple(path for path in self._nested if path[0] == agent)
             for agent in self.possible_agents
@@ -146,13 +148,6 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
     @cached_property
     def _flat(self) -> FlatActions:
         return FlatActions(self._calls, self._most, speaks=self._speaks)
-
-    @property
-    def _reads(self) -> Sequence[str]:
-        """Paths of the beliefs in observations and infos."""
-        return [path_text((agent,)) for agent in self.possible_agents] + [
-            *map(path_text, self._nested)
-        ]
 
     def _forget(self) -> None:
         """Begin a life without a world."""

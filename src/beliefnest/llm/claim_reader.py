@@ -40,6 +40,10 @@ class _Found(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     claims: list[dict[str, Any]]
 
 
+def _as_it_is(model: Model) -> Model:
+    return model
+
+
 @dataclass(frozen=True, slots=True)
 class ClaimsFromModel:
     """Reader that asks a model which claims a text makes; see `claims_from_model`.
@@ -53,7 +57,7 @@ class ClaimsFromModel:
 
     model: Model
     sampling: Sampling = field(default_factory=Sampling)
-    wrap: Callable[[Model], Model] = lambda model: model
+    wrap: Callable[[Model], Model] = _as_it_is
 
     @property
     def name(self) -> str:

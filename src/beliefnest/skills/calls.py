@@ -18,6 +18,15 @@ OPEN_CONTAINER = Skill(
 """The bot's method, as a call that first goes there."""
 
 
+CLAIM_CALLS = {
+    "located": ("located", "item", "place"),
+    "absent": ("absent", "item", "place"),
+    "position": ("positionOf", "agent", "place"),
+    "block": ("blockAt", "place", "state"),
+}
+"""Function of programs that makes a claim, and names of its arguments in order, by kind."""
+
+
 @cache
 def callables() -> Mapping[str, Skill]:
     """Return everything that a `Call` can name."""
@@ -77,11 +86,6 @@ def _code(value: Any) -> str:
 
 def _claim_code(claim: dict[str, Any]) -> str:
     """Return JavaScript that makes a claim, given as plain data."""
-    place = _code(tuple(claim["place"]))
-    match claim["kind"]:
-        case "position":
-            return f"positionOf({_code(claim['agent'])}, {place})"
-        case "block":
-            return f"blockAt({place}, {_code(claim['state'])})"
-        case kind:
-            return f"{kind}({_code(claim['item'])}, {place})"
+    function, *names = CLAIM_CALLS[claim["kind"]]
+    parts = [tuple(claim[name]) if name == "place" else claim[name] for name in names]
+    return f"{function}({', '.join(map(_code, parts))})"

@@ -46,8 +46,6 @@ class PersonCell:
 
 
 _OTHER_FOLDERS = {
-    "search.json": "a search of `beliefnest search-items`, which has no rows; run that command "
-    "again with this folder to print its report",
     "set.json": "a set of items, which has no answers; ask models with `beliefnest items FOLDER "
     "--models NAMES -o OUT`, and give OUT",
     "functional.json": "a folder of `beliefnest items --functional`; its tables are in "

@@ -9,7 +9,9 @@ from tests.profiles import at_night, few_by_day
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.task import Task
+from beliefnest.errors import InputError
 from beliefnest.studies.items.functional.certifying import Certificate, certified
+from beliefnest.studies.items.functional.groups import GroupFolder
 from beliefnest.studies.items.functional.pairing import LiteralFunctionalPair, by_order, read_gaps
 from beliefnest.studies.items.functional.siblings import TaskFamily
 
@@ -115,6 +117,17 @@ def test_a_model_answers_and_plays_and_a_figure_is_drawn(tmp_path, capsys):
     model, gaps = read_gaps(tmp_path / "out")
     assert (model, [*gaps]) == ("first-option", [0])
     assert gaps[0].difference == told["pairs"][-1]["difference"]
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [('{"error": nu', "group.json is damaged"), ('{"error": null}', "field 'search'")],
+)
+def test_a_damaged_result_of_a_group_is_refused(tmp_path, content, words):
+    (tmp_path / "group.json").write_text(content, encoding="utf-8")
+    with pytest.raises(InputError, match="delete it to certify it again") as refusal:
+        GroupFolder(tmp_path).cell("group")
+    assert words in str(refusal.value)
 
 
 @pytest.mark.parametrize("options", [[], ["--model", "chance"]])

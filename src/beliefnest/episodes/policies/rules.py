@@ -9,6 +9,7 @@ import math
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Literal
 
 import numpy as np
@@ -84,7 +85,8 @@ class Rule:
         if self.tells == "tell" and claims:
             place = chosen(self.take, list(claims.values()), view)
             claims = {claim: at for claim, at in claims.items() if at == place}
-        yield from map(said, list(claims)[: 1 if self.tells == "tell" else None])
+        most = 1 if self.tells == "tell" else len(claims)
+        yield from map(said, islice(claims, most))
 
     def _deeds(self, view: AgentView, mind: Imagination) -> Iterator[Call]:
         goals = _goals_of(view)

@@ -171,7 +171,8 @@ def _made(nest: Nest, item: Item, question: ItemQuestion) -> ItemRecord | Droppe
 def _contested(nest: Nest, asked: Answers, naming: Naming) -> str:
     """Return why words that an agent of the chain heard leave the answer open; empty: none do.
 
-    Words without a claim, or whose claim nobody takes up, change no belief; readers may think so.
+    Words without a claim, and all words where testimony is none, change no belief; readers may
+    think so.
     """
     believed = asked.believed
     if believed is None:
@@ -181,11 +182,11 @@ def _contested(nest: Nest, asked: Answers, naming: Naming) -> str:
     wanted = names_asked_for(believed, naming)
     for name in parse_path(believed.path, nest.agents):
         hearer = nest[f"/{name}"]
-        taken_up = {(tick, speaker) for tick, speaker, _ in hearer.heard_claims}
+        claimed = {(tick, speaker) for tick, speaker, _ in hearer.heard_claims}
         if nest.setting.perception.testimony == "none":
-            taken_up = set()
+            claimed = set()
         for tick, speaker, words in hearer.state.chat:
-            is_plain = (tick, speaker) not in taken_up
+            is_plain = (tick, speaker) not in claimed
             if is_plain and mentions(wanted, words) and mentions(options, words):
                 return (
                     f"{titled(name)} heard {titled(speaker)} say {words!r}, which changes no "

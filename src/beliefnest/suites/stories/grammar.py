@@ -371,16 +371,13 @@ def _of(text: str, lines: Iterable[Line]) -> Iterator[Line]:
 def _parts(words: str, number: int, unit: str) -> tuple[Line, ...]:
     """Return the sentences of two deeds of the same agents; empty: it has no such parts."""
     if match := _BEFORE_LEAVING.fullmatch(words):
-        pairs = [(match["first"], f"{match['agents']} left{match['room'] or ''}")]
+        pair = (match["first"], f"{match['agents']} left{match['room'] or ''}")
+    elif match := _TWO_DEEDS.match(words):
+        pair = (words[: match.start("joint")], f"{match['agents']} {words[match.end() :]}")
     else:
-        pairs = [
-            (words[: match.start("joint")], f"{match['agents']} {words[match.end() :]}")
-            for match in _TWO_DEEDS.finditer(words)
-            if match.start() == 0
-        ]
-    for pair in pairs:
-        with suppress(InputError):
-            return tuple(line for each in pair for line in parse_clauses(number, each, unit))
+        return ()
+    with suppress(InputError):
+        return tuple(line for each in pair for line in parse_clauses(number, each, unit))
     return ()
 
 

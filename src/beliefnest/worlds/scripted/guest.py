@@ -96,9 +96,7 @@ class Guest:
 
     def stray_error(self) -> Any:
         """Return the error of the first promise that was rejected without a handler, or None."""
-        for promise in self._strays.values():
-            return self._reason(promise)
-        return None
+        return next(map(self._reason, self._strays.values()), None)
 
     def send(self, message: list[object]) -> dict[str, Any]:
         """Send a message to the program, and run everything that can run."""

@@ -103,8 +103,7 @@ class Interpreter:
         """Set a state; this interpreter must be new."""
         end = max(place + len(piece) for place, piece in state.pieces)
         more = -(-end // _PAGE) - self._machine.size // _PAGE
-        if more > 0:
-            self._machine.grow(more)
+        self._machine.grow(max(0, more))
         for place, piece in state.pieces:
             self._machine.write(place, piece)
         self._runtime, self._context = state.runtime, state.context
@@ -126,8 +125,7 @@ class Interpreter:
 
     def number(self, value: float) -> int:
         """Return a number as a value."""
-        name = self._letters["QTS_NewFloat64"]
-        return self._machine.call_with_number(name, self._context, value)
+        return self._machine.call_with_number(self._letters["QTS_NewFloat64"], self._context, value)
 
     def buffer(self, length: int) -> tuple[int, int]:
         """Return address and value of an array buffer of zeros, which the host can always read."""

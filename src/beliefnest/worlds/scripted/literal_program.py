@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from beliefnest.skills.calls import CLAIM_CALLS
 from beliefnest.skills.javascript import parsed
 from beliefnest.world.event_words import Announcement
 from beliefnest.worlds.protocol import Fault, Unfinished
@@ -30,10 +31,7 @@ _NUMBER = re.compile(r"(?!-0(?:\.0*)?$)-?(?:0|[1-9]\d{0,14})(?:\.\d{1,15})?", re
 _KEY = re.compile(r"[A-Za-z][\w ]*", re.ASCII)
 """Keys that keep their order in JavaScript and mean nothing there."""
 _BOT = {"$": "h", "id": 0}
-_CLAIMS = {
-    **{b"located": ("located", "item", "place"), b"absent": ("absent", "item", "place")},
-    **{b"positionOf": ("position", "agent", "place"), b"blockAt": ("block", "place", "state")},
-}
+_CLAIMS = {call.encode(): (kind, *names) for kind, (call, *names) in CLAIM_CALLS.items()}
 """Functions that make claims: the kind, and the names of the arguments in order."""
 _ONE, _TWO, _THREE, _SOME = range(1, 2), range(2, 3), range(3, 4), range(1, 100)
 """Numbers of parts."""

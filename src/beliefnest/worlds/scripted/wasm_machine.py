@@ -84,15 +84,13 @@ class Machine:
 
     def number(self, name: str) -> int:
         """Return the value of an exported global."""
-        value = self._value
-        self._ffi.wasmtime_global_get(self._context, byref(self._global(name)), byref(value))
-        return int(value.of.i32)
+        self._ffi.wasmtime_global_get(self._context, byref(self._global(name)), byref(self._value))
+        return int(self._value.of.i32)
 
     def set_number(self, name: str, number: int) -> None:
         """Set an exported global."""
-        value = self._value
-        value.of.i32 = number
-        self._ffi.wasmtime_global_set(self._context, byref(self._global(name)), byref(value))
+        self._value.of.i32 = number
+        self._ffi.wasmtime_global_set(self._context, byref(self._global(name)), byref(self._value))
 
     def add_to_table(self, name: str, act: Callable[[Any], int | None], kinds: str) -> None:
         """Add a function to an exported table.

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+import msgspec
+
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 from beliefnest.episodes.policies.search import Search
@@ -16,7 +18,11 @@ from beliefnest.episodes.trials import Trials
 from beliefnest.files import replace_file
 from beliefnest.plan.cells import Key
 from beliefnest.plan.terms import PlayStage
+from beliefnest.scenarios.record_forms import checked_form, read_json
 from beliefnest.skills.calls import program_of
+from beliefnest.studies.forms import FailedCell
+
+_AGAIN = "delete it to certify it again"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +94,15 @@ class GroupCell:
             }
 
 
+class _PlayedGroup(msgspec.Struct):
+    """What `GroupCell.play` returns."""
+
+    error: None
+    search: list[bool]
+    rules: dict[str, list[bool]]
+    best: int | None
+
+
 def best_course(group: Sequence[Trials], players: Sequence[str], order: int) -> int:
     """Return in how many of some instances the best single course of the players wins.
 
@@ -124,9 +139,17 @@ class GroupFolder:
         return self.path / "spent.jsonl"
 
     def cell(self, name: str) -> dict[str, Any] | None:
-        """Return the result of a cell; None: it has none."""
+        """Return the result of a cell; None: it has none.
+
+        Raises:
+            InputError: Its file is damaged.
+        """
         file = self._file(name)
-        content: dict[str, Any] | None = json.loads(file.read_text()) if file.exists() else None
+        if not file.exists():
+            return None
+        content = read_json(file, _AGAIN)
+        form = _PlayedGroup if content.get("error") is None else FailedCell
+        checked_form(content, form, file, _AGAIN)
         return content
 
     def write_cell(self, name: str, content: Mapping[str, Any]) -> None:

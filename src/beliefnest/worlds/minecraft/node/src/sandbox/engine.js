@@ -148,9 +148,9 @@ class Guest {
     return this.limits.fuel + GRACE - this.interpreter.fuel.value
   }
 
-  /** Return true if all memory of the guest was in use at some time. */
+  /** Return true if all memory of the guest was in use at some time; it never shrinks. */
   get isFull () {
-    return this.interpreter.size >= this.limits.memory
+    return this.interpreter.glue.HEAPU8.length >= this.limits.memory
   }
 
   /** Return true if no code of the guest is on the stack. */

@@ -43,7 +43,9 @@ function ofEnd ({ kind, message, guestStack }, limits) {
 
 function ofError (error, limits, full) {
   const { message, name, skill, stack, kind, reason } = plainError(error)
-  const limit = full && isThrownNull(error) ? 'memory' : limitOf(name, message)
+  // Without room even for its error about memory, the interpreter throws null.
+  const isFull = full && error?.thrown === true && error.name === 'object' && error.message === 'null'
+  const limit = isFull ? 'memory' : limitOf(name, message)
   if (limit) return { message: limitMessage(limit, limits), skill: null, kind: limit, stack }
   const prefix = name === 'Error' || kind !== null || message.startsWith(`${name}:`) ? '' : `${name}: `
   return { message: prefix + message, skill, kind: kind ?? 'error', reason, stack }
@@ -62,11 +64,6 @@ function plainError (record) {
     reason: record?.reason === 'no_way' ? 'no_way' : null,
     stack: field('stack', '', MAX_STACK)
   }
-}
-
-// What the interpreter throws where there is no room even for its error about memory.
-function isThrownNull (record) {
-  return record?.thrown === true && record.name === 'object' && record.message === 'null'
 }
 
 function limitOf (name, message) {

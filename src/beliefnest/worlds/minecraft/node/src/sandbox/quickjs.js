@@ -99,11 +99,6 @@ class QuickJS {
     this.context = context
   }
 
-  /** Return the size of the memory in bytes; it never shrinks. */
-  get size () {
-    return this.glue.HEAPU8.length
-  }
-
   limitMemory (bytes) {
     this.ffi.QTS_RuntimeSetMemoryLimit(this.runtime, bytes)
   }
