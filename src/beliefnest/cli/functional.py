@@ -40,7 +40,7 @@ def run_functional(options: ItemsOptions) -> int:
         BeliefNestError: The study or a task is wrong, or an episode has no result.
     """
     design = check_functional(Study.load(options.study).design, str(options.study))
-    families, seeds, jobs = list(families_of(design)), design.seeds, options.jobs
+    families, seeds, jobs = families_of(design), design.seeds, options.jobs
     model, repeats = options.model, design.repeats
     own = {FUNCTIONAL, "functional.png", *(each.folder for each in families)}
     there = {each.name for each in options.folder.glob("*")}

@@ -161,12 +161,20 @@ def test_a_study_of_scenarios_is_refused(tmp_path, capsys):
     assert "name the files under `tasks`" in capsys.readouterr().err
 
 
-def test_a_study_that_names_another_order_is_refused(tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("orders", "words"),
+    [
+        ("[2]", "tell.yaml is of order 1, and `orders` has 2; add"),
+        ("[1, 2]", "`orders` has 2, and no condition that is played is of this order"),
+    ],
+)
+def test_a_study_that_names_another_order_is_refused(tmp_path, capsys, orders, words):
     study, out = tmp_path / "study.yaml", tmp_path / "out"
     study.write_text(
-        f"tasks: [{EXAMPLES / 'tell.yaml'}]\npolicies: [search]\norders: [2]\nconditions: [1]\n",
+        f"tasks: [{EXAMPLES / 'tell.yaml'}]\npolicies: [search]\norders: {orders}\n"
+        "conditions: [1]\n",
         encoding="utf-8",
     )
     assert run_command_line(["items", str(study), "-o", str(out), "--functional"]) == 2
-    assert "tell.yaml is of order 1, and `orders` has 2; add" in capsys.readouterr().err
+    assert words in " ".join(capsys.readouterr().err.split())
     assert not out.exists()

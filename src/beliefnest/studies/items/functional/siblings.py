@@ -74,12 +74,15 @@ class TaskFamily:
         return ""
 
 
-def families_of(design: EpisodeDesign) -> Iterator[TaskFamily]:
-    """Yield the families of a study of episodes: each file under each of its conditions.
+def families_of(design: EpisodeDesign) -> list[TaskFamily]:
+    """Return the families of a study of episodes: each file under each of its conditions.
 
     Raises:
-        InputError: A task has no random instances, or is of an order that the study does not name.
+        InputError: A task has no random instances, or is of an order that the study does not name,
+            or the study names an order of no task.
     """
+    families: list[TaskFamily] = []
+    orders: set[object] = {"omniscient"}
     for name in design.tasks:
         document = Task.scenario_document(name)
         if document is None or not has_instances(document):
@@ -96,7 +99,14 @@ def families_of(design: EpisodeDesign) -> Iterator[TaskFamily]:
                     f"condition {condition or 0} of {name} is of order {order}, and `orders` has "
                     f"{named}; add the order, or choose other `conditions`"
                 )
-            yield family
+            families.append(family)
+            orders.add(order)
+    for unused in set(design.orders) - orders:
+        raise InputError(
+            f"`orders` has {unused}, and no condition that is played is of this order; leave it "
+            "out, or add a condition"
+        )
+    return families
 
 
 def check_functional(design: object, name: str) -> EpisodeDesign:
