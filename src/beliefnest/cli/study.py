@@ -52,9 +52,9 @@ def run_study(options: StudyOptions) -> int:
     with noted_warnings() as warned, progress_on(options.study.stem) as on_progress:
         on_progress("checking all variations", 0, 0)
 
-        def checked(done: int, total: int) -> None:
+        def checked(what: str, done: int, total: int) -> None:
             if done * _REPORTS // total > (done - 1) * _REPORTS // total and total > _MANY:
-                on_progress("checked variations", done, total)
+                on_progress(what, done, total)
 
         study.plan(checked)
         if options.merge:

@@ -1,6 +1,6 @@
 """Studies: from a design to a folder of results."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from importlib.metadata import version as version_of
@@ -224,14 +224,12 @@ class Study:
         """Return the design: the values that the study combines."""
         return self._design
 
-    def plan(
-        self, on_variation: Callable[[int, int], None] = lambda done, total: None
-    ) -> Plan[Cell] | Plan[EpisodeCell]:
+    def plan(self, on_item: OnItem | None = None) -> Plan[Cell] | Plan[EpisodeCell]:
         """Return all cells, each checked, and the invalid combinations.
 
         Args:
-            on_variation: Function that receives the number of checked variations of a scenario,
-                and the number of all.
+            on_item: Function that receives the progress: what is done with variations, the number
+                of those done, and of all.
 
         Raises:
             ScenarioError: A scenario is wrong even without any variation.
@@ -240,23 +238,23 @@ class Study:
         """
         if self._plan is None:
             with self._naming():
-                self._plan = self._planned(on_variation)
+                self._plan = self._planned(on_item or _say_nothing_of_items)
         return self._plan
 
-    def _planned(self, on_variation: Callable[[int, int], None]) -> Plan[Cell] | Plan[EpisodeCell]:
+    def _planned(self, on_item: OnItem) -> Plan[Cell] | Plan[EpisodeCell]:
         design = self._design
         if not isinstance(design, Design):
             for player in design.players:
                 with self._naming(player.place):
                     check_player(player)
             return _told_apart(plan_episodes(design), self._kind.table)
-        plan = plan_cells(design, self._documents, on_variation)
+        plan = plan_cells(
+            design, self._documents, lambda done, total: on_item("checked variations", done, total)
+        )
         if design.design == "latin-square":
             plan = with_balanced_lists(plan)
         if design.balance:
-            self._made = made_items(
-                plan.cells, self._documents, lambda _, done, total: on_variation(done, total)
-            )
+            self._made = made_items(plan.cells, self._documents, on_item)
             plan = with_balanced_items(plan, self._made, design.balance, design.seed)
         return _told_apart(plan, self._kind.table)
 
@@ -454,8 +452,7 @@ class Study:
         """
         if not is_amount(held_out) or held_out >= 1:
             raise InputError(f"held_out is {quoted(held_out)}; give a share of at least 0, below 1")
-        say = on_item or _say_nothing_of_items
-        design, cells = self._scenarios(lambda done, total: say("preparing scenes", done, total))
+        design, cells = self._scenarios(on_item)
         refuse_claims(design.setting)
         played = self._made or made_items(cells, self._documents, on_item)
         names = dict.fromkeys(map(item_name, cells))
@@ -500,11 +497,9 @@ class Study:
         say = on_item or _say_nothing_of_items
         return played_otherwise(cells, self._documents, items.items, scenes, say)
 
-    def _scenarios(
-        self, on_variation: Callable[[int, int], None] = lambda done, total: None
-    ) -> tuple[Design, Sequence[Cell]]:
+    def _scenarios(self, on_item: OnItem | None = None) -> tuple[Design, Sequence[Cell]]:
         """Return design and cells; raise InputError if the study plays episodes."""
-        design, plan = self._design_of_scenarios(), self.plan(on_variation)
+        design, plan = self._design_of_scenarios(), self.plan(on_item)
         cells = [cell for cell in plan.cells if isinstance(cell, Cell)]
         self._check_valid(plan)
         return design, cells
