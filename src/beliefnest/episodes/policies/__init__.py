@@ -202,11 +202,6 @@ def _system_file(name: str) -> str:
     return dict(parse_qsl(name.partition("?")[2])).get("system", "")
 
 
-def _with_system_file(name: str, file: Path) -> str:
-    plain, _, query = name.partition("?")
-    return f"{plain}?{urlencode({**dict(parse_qsl(query)), 'system': str(file)}, safe='/.')}"
-
-
 def is_program(name: str) -> bool:
     """Return True if a policy plays programs of a file."""
     kind, _, file = name.partition(":")
@@ -215,13 +210,8 @@ def is_program(name: str) -> bool:
 
 def policy_beside(name: str, folder: Path) -> str:
     """Return the name of a policy; if it has a file, look for a relative path in `folder`."""
-    if is_own_policy(name):
-        file, _, made = name.rpartition(":")
-        return f"{folder / file}:{made}" if file.endswith(".py") else name
-    if system := _system_file(name):
-        return _with_system_file(name, folder / system)
-    kind, _, file = name.partition(":")
-    return f"{kind}:{folder / file}" if is_program(name) else name
+    file = file_of_policy(name)
+    return policy_of_file(name, folder / file) if file else name
 
 
 def file_of_policy(name: str) -> str:
@@ -229,9 +219,7 @@ def file_of_policy(name: str) -> str:
     if is_own_policy(name):
         file = name.rpartition(":")[0]
         return file if file.endswith(".py") else ""
-    if system := _system_file(name):
-        return system
-    return name.partition(":")[2] if is_program(name) else ""
+    return _system_file(name) or (name.partition(":")[2] if is_program(name) else "")
 
 
 def policy_of_file(name: str, file: Path) -> str:
@@ -239,7 +227,8 @@ def policy_of_file(name: str, file: Path) -> str:
     if is_own_policy(name):
         return f"{file}:{name.rpartition(':')[2]}"
     if _system_file(name):
-        return _with_system_file(name, file)
+        plain, _, query = name.partition("?")
+        return f"{plain}?{urlencode({**dict(parse_qsl(query)), 'system': str(file)}, safe='/.')}"
     return f"{name.partition(':')[0]}:{file}"
 
 
