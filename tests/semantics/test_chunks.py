@@ -13,7 +13,7 @@ from beliefnest.world import terrain
 
 PATHS = ["/", *(f"/{a}" for a in NAMES), *(f"/{a}/{b}" for a in NAMES for b in NAMES if a != b)]
 few = settings(
-    max_examples=at_night(200, 3), suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=at_night(200, 2), suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 
 

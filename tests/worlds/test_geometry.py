@@ -201,8 +201,8 @@ def test_bodies_pass_alike_in_both_worlds(embedded: World, scripted: World) -> N
 @pytest.mark.parametrize("kind", few_by_day(KINDS, 0))
 def test_bodies_pass_alike_for_all_shapes(kind: str, scripted: World) -> None:
     # All of them at night; else each kind has others.
-    step = at_night(1, 4 * len(KINDS))
-    states = distinct_states()[4 * KINDS.index(kind) % step :: step]
+    step = at_night(1, 8 * len(KINDS))
+    states = distinct_states()[8 * KINDS.index(kind) % step :: step]
     for first in range(0, len(states), 96):
         # Each bot takes memory of Node until its world is closed.
         world = open_world("embedded", 0)

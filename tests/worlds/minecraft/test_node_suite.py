@@ -10,16 +10,19 @@ from tests.profiles import NIGHTLY, at_night
 from beliefnest.worlds.minecraft.node_files import node_path
 
 NODE_ROOM = Path(__file__).parents[3] / "src" / "beliefnest" / "worlds" / "minecraft" / "node"
-FILES = sorted(path.relative_to(NODE_ROOM) for path in (NODE_ROOM / "test").rglob("*.test.js"))
+AT_NIGHT = ("determinism.test.js", "doors.test.js", "resuming.test.js")
+"""Files that start Node often for what Python's tests of seeds, doors and resumed runs hold too."""
+FILES = sorted(
+    path.relative_to(NODE_ROOM)
+    for path in (NODE_ROOM / "test").rglob("*.test.js")
+    if NIGHTLY or path.name not in AT_NIGHT
+)
 TOGETHER = () if NIGHTLY else ("parts", "places", "plugins", "sandbox", "skills")
 """Folders whose files run in one process by day: most of what a file takes is Node's beginning."""
 
-LONG = (
-    *("fuzz", "long", "people", "tcp", "determinism.test.js", "resuming.test.js"),
-    *("doors.test.js", "process.test.js", "rest.test.js"),
-)
+LONG = ("fuzz", "long", "people", "tcp", "process.test.js", "rest.test.js", *AT_NIGHT)
 """Folders and files whose tests wait for real time, vary at random what the others try, or start
-Node often for what Python's tests of seeds, resumed runs, doors, channels and rest hold as well."""
+Node often for what Python's tests of channels and rest hold as well."""
 
 
 def runs() -> dict[str, list[Path]]:

@@ -6,8 +6,11 @@ const fs = require('node:fs')
 const path = require('node:path')
 
 const SKILLS = path.join(__dirname, '..', 'skills')
+// By day every other file: what differs over TCP is the way to the bot, not the skill.
+const STEP = process.env.BELIEFNEST_NIGHTLY === '1' ? 1 : 2
 const AT_ONCE = 16
 
 describe('over TCP', { concurrency: AT_ONCE }, () => {
-  for (const file of fs.readdirSync(SKILLS).filter(name => name.endsWith('.test.js')).sort()) require(path.join(SKILLS, file))
+  const files = fs.readdirSync(SKILLS).filter(name => name.endsWith('.test.js')).sort()
+  for (const file of files.filter((_, number) => number % STEP === 0)) require(path.join(SKILLS, file))
 })
