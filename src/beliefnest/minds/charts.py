@@ -35,6 +35,10 @@ class Posterior(Protocol):
         """Names of all factors."""
 
     @property
+    def parts(self) -> dict[str, tuple[str, str]]:
+        """Kind of each factor and its goal or alternative, by the name of the factor."""
+
+    @property
     def impossible(self) -> Impossible | None:
         """First evidence that no hypothesis explains; None if there is none."""
 
@@ -100,9 +104,9 @@ def bars_of(inference: Posterior, tick: int | None) -> BarChart:
         else:
             colours = _colours(inference)
             bars = {
-                factor.partition(".")[2]: inference.mean(factor, tick)
-                for factor in inference.factors
-                if factor.partition(".")[0] == kind
+                name: inference.mean(factor, tick)
+                for factor, (own, name) in inference.parts.items()
+                if own == kind
             }
         low, high = _utility_scale(inference) if kind == "utility" else (0.0, 1.0)
         groups.append(BarGroup(title, low, high, bars, colours, is_share=kind != "utility"))
@@ -131,7 +135,7 @@ def _utility_scale(inference: Posterior) -> tuple[float, float]:
 
 
 def _panel(inference: Posterior, name: str) -> PosteriorPanel:
-    kinds = {factor.partition(".")[0] for factor in inference.factors} - {"cell"}
+    kinds = {kind for kind, _ in inference.parts.values()} - {"cell"}
     if name not in kinds and (name not in inference.factors or name == "cell"):
         plottable = ", ".join([*sorted(kinds), *inference.factors[:-1]])
         raise InputError(f"{name!r} cannot be plotted; there are {plottable}")
@@ -142,10 +146,10 @@ def _panel(inference: Posterior, name: str) -> PosteriorPanel:
         series = {f"{v:.3g}": tuple(share.get(v, 0.0) for share in shares) for v in values}
         title = f"{name}: probability of its values"
         return PosteriorPanel(title, 0, 1, ticks, series, shades(list(series)), True, True)
-    names = [factor for factor in inference.factors if factor.partition(".")[0] == name]
     series = {
-        factor.partition(".")[2]: tuple(inference.mean(factor, tick) for tick in ticks)
-        for factor in names
+        of: tuple(inference.mean(factor, tick) for tick in ticks)
+        for factor, (kind, of) in inference.parts.items()
+        if kind == name
     }
     is_share = name != "utility"
     low, high = (0.0, 1.0) if is_share else _utility_scale(inference)

@@ -24,6 +24,10 @@ if TYPE_CHECKING:  # Few results become tables or figures.
     from beliefnest.pictures.figure import Figure
 
 
+_CHANGING = ("cell", "credence_now")
+"""Kinds of factors that change from step to step."""
+
+
 def reported_credence(row: Floats, possible: int, believed: int, lapse: float) -> Floats:
     """Return the credence that is reported for a knowledge.
 
@@ -83,7 +87,12 @@ class Inference:
     @property
     def factors(self) -> tuple[str, ...]:
         """Names of all factors."""
-        return (*self.model.factors, "cell")
+        return tuple(self.parts)
+
+    @property
+    def parts(self) -> dict[str, tuple[str, str]]:
+        """Kind of each factor and its goal or alternative, by the name of the factor."""
+        return {**self.model.factor_parts, "cell": ("cell", "")}
 
     @property
     def impossible(self) -> Impossible | None:
@@ -188,10 +197,7 @@ class Inference:
         """
         if tick is not None:
             self._number(tick)
-        names = [
-            name for name in self.factors if name != "cell" and not name.startswith("credence_now.")
-        ]
-        changes = []
+        names, changes = self._lasting, []
         before = {name: self._grouped(name, self._posterior_of(None)) for name in names}
         for number, step in enumerate(self._known):
             after = {name: self._marginal_of(name, number) for name in names}
@@ -300,14 +306,15 @@ class Inference:
         head = f"<inference about {self.model.agent}"
         if self._failed is not None:
             return f"{head}: impossible from {self.impossible}>"
-        means = [
-            f"{name} {self.mean(name):.3g}"
-            for name in self.factors
-            if name != "cell" and not name.startswith("credence_now.")
-        ]
+        means = [f"{name} {self.mean(name):.3g}" for name in self._lasting]
         return f"{head}, ticks {self.since} to {self.until}: {', '.join(means)}>"
 
     # Helpers of the questions above
+
+    @property
+    def _lasting(self) -> list[str]:
+        """Names of the factors that do not change from step to step."""
+        return [each for each, (kind, _) in self.parts.items() if kind not in _CHANGING]
 
     def _number(self, tick: int | None) -> int:
         if tick is None:
@@ -361,12 +368,15 @@ class Inference:
         shares: Floats = np.exp(logs - log_sum(logs.reshape(-1)))
         return shares
 
-    def _marginal_of(self, factor: str, number: int) -> dict[Any, float]:
-        if factor not in self.factors:
+    def _parts_of(self, factor: str) -> tuple[str, str]:
+        if factor not in self.parts:
             raise InputError(f"no factor {factor!r}; there are {', '.join(self.factors)}")
+        return self.parts[factor]
+
+    def _marginal_of(self, factor: str, number: int) -> dict[Any, float]:
+        kind, name = self._parts_of(factor)
         step = None if number < 0 else self._known[number]
-        kind, _, name = factor.partition(".")
-        if kind in ("cell", "credence_now"):
+        if kind in _CHANGING:
             if step is None:
                 raise TickError(
                     f"{self.model.agent} had not been seen until then; ask from tick "
@@ -416,9 +426,7 @@ class Inference:
 
     def _values(self, factor: str) -> npt.NDArray[np.float64]:
         """Return values of a factor, on the axes (actual, rationality, utility, credence)."""
-        if factor not in self.factors:
-            raise InputError(f"no factor {factor!r}; there are {', '.join(self.factors)}")
-        kind, _, name = factor.partition(".")
+        kind, name = self._parts_of(factor)
         model = self.model
         if kind == "utility":
             number = list(model.goals).index(name)

@@ -187,13 +187,17 @@ class MindModel:
         These are `utility.GOAL`; with a doubt `credence.ALTERNATIVE`, `credence_now.ALTERNATIVE`
         and `actual.ALTERNATIVE`; and `rationality` if several are considered.
         """
-        names = [f"utility.{goal}" for goal in self.goals]
+        return tuple(self.factor_parts)
+
+    @property
+    def factor_parts(self) -> dict[str, tuple[str, str]]:
+        """Kind of each factor and its goal or alternative, by the name of the factor, in order."""
+        parts = [("utility", goal) for goal in self.goals]
         if self.doubt is not None:
-            for kind in ("credence", "credence_now", "actual"):
-                names += [f"{kind}.{name}" for name in self.alternative_names]
-        if len(self.rationalities) > 1:
-            names.append("rationality")
-        return tuple(names)
+            kinds = ("credence", "credence_now", "actual")
+            parts += [(kind, name) for kind in kinds for name in self.alternative_names]
+        named = {f"{kind}.{name}": (kind, name) for kind, name in parts}
+        return named | ({"rationality": ("rationality", "")} if len(self.rationalities) > 1 else {})
 
     @property
     def observer_doubts(self) -> bool:

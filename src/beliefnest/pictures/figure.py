@@ -12,6 +12,7 @@ from beliefnest.pictures.marks import XY, Drawing, scaled
 from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import agent_looks
 from beliefnest.pictures.panel import draw_panel, draw_title
+from beliefnest.pictures.plan import SignKind
 from beliefnest.pictures.scene import Scene
 from beliefnest.pictures.svg import svg_text
 
@@ -148,7 +149,7 @@ def _side_by_side(panels: Sequence[Scene | BarChart], width: float, about: str) 
     columns = columns_for(len(panels), width - 2 * MARGIN, _PANEL)
     wide = (width - 2 * MARGIN - _GAP * (columns - 1)) / columns
     marks: list[Drawn] = []
-    kinds: set[str] = set()
+    kinds: set[SignKind] = set()
     bottom = MARGIN
     for start in range(0, len(panels), columns):
         row = panels[start : start + columns]

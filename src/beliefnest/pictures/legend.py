@@ -8,19 +8,19 @@ from beliefnest.pictures.marks import XY, Circle, Lines, Polygon, Rectangle, Tex
 from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, mix
 from beliefnest.pictures.panel import PanelBlock
-from beliefnest.pictures.plan import hatching, heat_colour
+from beliefnest.pictures.plan import HeatSign, SightSign, SignKind, hatching, heat_colour
 from beliefnest.pictures.scene import Device, Store
 
 _GROUND = "#f0ece3"
 
 
 def draw_legend(
-    kinds: Iterable[str],
+    kinds: Iterable[SignKind],
     looks: Mapping[str, AgentLook],
     at: XY,
     width: float,
     size: float,
-    words: Mapping[str, str] | None = None,
+    words: Mapping[SignKind, str] | None = None,
 ) -> PanelBlock:
     """Draw signs with their meanings, as many in a line as fit.
 
@@ -52,20 +52,28 @@ def draw_legend(
 
 
 _Sign = Callable[[XY, float, float], list[Drawn]]
-_KINDS = ("heat", "sight", "remembered", "told", "false", "unknown blocks", "container", "trail")
+_KINDS = (
+    HeatSign,
+    SightSign,
+    "remembered",
+    "told",
+    "false",
+    "unknown blocks",
+    "container",
+    "trail",
+)
 
 
-def _order(kind: str) -> tuple[int, str]:
-    first = next((n for n, prefix in enumerate(_KINDS) if kind.startswith(prefix)), len(_KINDS))
-    return first, kind
+def _order(kind: SignKind) -> tuple[int, SignKind]:
+    what = kind if isinstance(kind, str) else type(kind)
+    return _KINDS.index(what) if what in _KINDS else len(_KINDS), kind
 
 
-def _entry(kind: str, looks: Mapping[str, AgentLook]) -> tuple[_Sign, str]:
-    if kind.startswith("sight"):
-        _, number, name = kind.split()
-        return _sight_sign(int(number), looks[name].colour), f"seen by {name}"
-    if kind.startswith("heat "):
-        return _heat, f"{kind.removeprefix('heat ')}: 1, 10, 50, 100 %"
+def _entry(kind: SignKind, looks: Mapping[str, AgentLook]) -> tuple[_Sign, str]:
+    if isinstance(kind, SightSign):
+        return _sight_sign(kind.number, looks[kind.name].colour), f"seen by {kind.name}"
+    if isinstance(kind, HeatSign):
+        return _heat, f"{kind.words}: 1, 10, 50, 100 %"
     if kind in _SIGNS:
         return _SIGNS[kind]
     return _device_sign(kind), kind.replace("_", " ")

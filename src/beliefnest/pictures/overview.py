@@ -10,7 +10,7 @@ from beliefnest.pictures.marks import XY, Drawing, Rectangle
 from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, PAPER, QUIET, AgentLook, Mark, agent_looks, mix
 from beliefnest.pictures.panel import PanelBlock, paragraph
-from beliefnest.pictures.plan import DrawnPlan, draw_plan
+from beliefnest.pictures.plan import DrawnPlan, SignKind, draw_plan
 from beliefnest.pictures.scene import Scene, Store
 
 _GAP = 12.0
@@ -90,7 +90,7 @@ class _Page:
 
     looks: Mapping[str, AgentLook]
     marks: list[Drawn]
-    kinds: set[str]
+    kinds: set[SignKind]
 
     def add(self, block: PanelBlock | DrawnPlan) -> None:
         self.marks += block.marks

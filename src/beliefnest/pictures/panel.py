@@ -9,7 +9,7 @@ from beliefnest.pictures.lettering import ASCENT, text_width, wrap
 from beliefnest.pictures.marks import XY, Text
 from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, mix
-from beliefnest.pictures.plan import draw_plan
+from beliefnest.pictures.plan import SignKind, draw_plan
 from beliefnest.pictures.scene import Device, DrawnAgent, Scene, Store
 
 _LINE = 1.32
@@ -29,7 +29,7 @@ class PanelBlock:
 
     marks: list[Drawn] = field(default_factory=list)
     bottom: float = 0.0
-    kinds: set[str] = field(default_factory=set)
+    kinds: set[SignKind] = field(default_factory=set)
 
 
 def belief_words(path: str) -> str:

@@ -5,6 +5,7 @@ import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -83,6 +84,23 @@ _MANY = 16
 _STORES = ("chest", "barrel", "furnace", "smoker")
 
 
+class SightSign(NamedTuple):
+    """Sign for what an agent sees; the first agent of a plan has number 0."""
+
+    number: int
+    name: str
+
+
+class HeatSign(NamedTuple):
+    """Sign for the probability of columns, with the words for it."""
+
+    words: str
+
+
+SignKind = str | SightSign | HeatSign
+"""Sign of a plan. Those that need no further facts are words."""
+
+
 @dataclass
 class DrawnPlan:
     """A finished plan.
@@ -97,7 +115,7 @@ class DrawnPlan:
     marks: list[Drawn]
     bottom: float
     unnamed: list[str] = field(default_factory=list)
-    kinds: set[str] = field(default_factory=set)
+    kinds: set[SignKind] = field(default_factory=set)
 
 
 def draw_plan(
@@ -191,7 +209,7 @@ class _Sheet:
         self._boards: list[Bounds] = []
         self.marks: list[Drawn] = []
         self.unnamed: list[str] = []
-        self.kinds: set[str] = set()
+        self.kinds: set[SignKind] = set()
 
     def _place(self, x: float, z: float) -> XY:
         low_x, low_z = self._scene.low
@@ -282,7 +300,7 @@ class _Sheet:
     def sights(self) -> None:
         """Draw a tint over the blocks that the first agent sees, hatching for other agents."""
         for number, sight in enumerate(self._scene.sights):
-            self.kinds.add(f"sight {number} {sight.name}")
+            self.kinds.add(SightSign(number, sight.name))
             if number == 0 and self._scene.relief is not None:
                 continue  # The relief has the tint.
             colour = self._looks[sight.name].colour
@@ -307,7 +325,7 @@ class _Sheet:
                 x0, y0, x1, y1 = self._square(x - low_x, z - low_z)
                 self.marks.append(Rectangle(x0, y0, x1 - x0, y1 - y0, heat_colour(share)))
         if self._scene.heat:
-            self.kinds.add(f"heat {self._scene.heat_words}")
+            self.kinds.add(HeatSign(self._scene.heat_words))
 
     def walls(self) -> None:
         """Draw blocks at this height, unknown blocks, and marks on false blocks."""

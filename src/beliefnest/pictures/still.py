@@ -10,13 +10,14 @@ from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import Drawing
 from beliefnest.pictures.palette import Mark, agent_looks
 from beliefnest.pictures.panel import draw_body
+from beliefnest.pictures.plan import SignKind
 from beliefnest.pictures.scene import AgentSight, Device, PlanColumn, Scene, Store
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import titled
 
 _WIDTH = 260.0
 """Width of a still, in points."""
-_WORDS: Mapping[str, str] = {
+_WORDS: Mapping[SignKind, str] = {
     "container": "closed, or out of sight",
     "unknown blocks": "never seen, or out of sight",
 }
