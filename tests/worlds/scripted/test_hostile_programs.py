@@ -52,6 +52,10 @@ OTHERS = {
         "error",
     ),
 }
+FILLING = {
+    "promises": "const again = () => Promise.resolve().then(again); await again()",
+    "caught": "const a = []; for (;;) try { a.push(Array(1e4).fill(1)) } catch (e) { a.push(e) }",
+}
 FORGERIES = {
     "toJSON": "Array.prototype.toJSON = Object.prototype.toJSON = () => [[1, 'nope', []]]",
     "JSON": 'JSON.stringify = () => \'["skill", "nope", []]\'; JSON.parse = () => ({ok: true})',
@@ -90,8 +94,9 @@ def test_what_computes_without_end_ends_by_its_fuel(nest: bn.Nest, name: str) ->
     assert (error.kind, error.message.partition(";")[0]) == ("fuel", FUEL)
 
 
-def test_what_fills_all_memory_says_so(nest: bn.Nest) -> None:
-    error = _beside(nest, "const again = () => Promise.resolve().then(again); await again()").error
+@pytest.mark.parametrize("name", FILLING)
+def test_what_fills_all_memory_says_so(nest: bn.Nest, name: str) -> None:
+    error = _beside(nest, FILLING[name]).error
     assert error is not None
     # Whether its memory or its computation is used up first, depends on the build.
     assert error.kind in ("memory", "fuel")

@@ -206,8 +206,8 @@ class Guest:
 
     def _fault(self, error: Exception) -> GuestEndedError:
         if self.ended is None:
-            trapped = ("fuel" if self._engine.fuel < 0 else "stack", "trap")
-            self.end(*(_uncaught(error) if isinstance(error, GuestError) else trapped))
+            limit = "fuel" if self._engine.fuel < 0 else "memory" if self.is_full else "stack"
+            self.end(*(_uncaught(error) if isinstance(error, GuestError) else (limit, "trap")))
         assert self.ended is not None
         return self.ended
 

@@ -343,6 +343,7 @@ class Guest {
   trapped (error) {
     if (this.interpreter.fuel.value < 0) return ['fuel', 'trap']
     if (this.interpreter.depth.value > STACK_BYTES || error instanceof RangeError) return ['stack', 'trap']
+    if (this.isFull) return ['memory', 'trap']
     return ['internal', String(error)]
   }
 }

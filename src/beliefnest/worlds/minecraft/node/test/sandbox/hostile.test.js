@@ -30,6 +30,7 @@ const HARM = [
   ['a sort with a liar', 'new Array(100000).fill(0).sort(() => Math.random() - 0.5); for (;;) {}', 'fuel', /fuel exhausted/],
   ['a proxy of endless keys', 'for (const key in new Proxy({}, { ownKeys: () => { for (;;) {} } })) key', 'fuel', /fuel exhausted/],
   ['a memory bomb', 'const all = []; for (;;) all.push(new Array(10000).fill(1))', null, /exhausted/],
+  ['a memory bomb that catches', 'const all = []; for (;;) { try { all.push(new Array(10000).fill(1)) } catch (e) { all.push(e) } }', null, /memory exhausted|fuel exhausted/],
   ['a string bomb', 'let s = "x"; for (;;) s += s', null, /exhausted|too long/],
   ['an array buffer bomb', 'const all = []; for (;;) all.push(new ArrayBuffer(1e7))', null, /memory exhausted|fuel exhausted|buffer/],
   ['a huge array buffer', 'new ArrayBuffer(2 ** 40)', 'error', /buffer/],
