@@ -82,19 +82,28 @@ def placed_in(box: Box, blocks: Terrain) -> Mapping[str, Sequence[Position]]:
     """Return by kind the positions of things that are blocks, in order."""
     x, y, z = box.low
     places: dict[str, list[Position]] = {kind: [] for kind in PLACED}
-    for first, states in blocks.slabs():
-        classes = block_classes()[states]
-        for i, j, k in np.argwhere(classes >= BLOCK_CLASSES.index(PLACED[0])).tolist():
-            # Leave upper halves of doors out: they move together with the lower ones.
-            if not _is_upper_half(int(states[i, j, k])):
-                kind = BLOCK_CLASSES[classes[i, j, k]]
-                places[kind].append((x + first + i, y + j, z + k))
+    is_placed = _is_placed()
+    if blocks.is_dense:
+        cells = np.argwhere(is_placed[blocks.dense()])
+    else:  # Only chunks with such states are looked at.
+        cells = blocks.find([state for state in blocks.states if is_placed[state]])
+    for i, j, k in cells.tolist():
+        kind = BLOCK_CLASSES[block_classes()[blocks[i, j, k]]]
+        places[kind].append((x + i, y + j, z + k))
     return places
 
 
 @cache
-def _is_upper_half(state: int) -> bool:
-    return Registry.load().properties(state).get("half") == "upper"
+def _is_placed() -> npt.NDArray[np.bool_]:
+    """Return by block state whether it is a thing that is numbered; the last: the unknown.
+
+    Upper halves of doors are left out: they move together with the lower ones.
+    """
+    is_placed: npt.NDArray[np.bool_] = block_classes() >= BLOCK_CLASSES.index(PLACED[0])
+    registry = Registry.load()
+    for state in np.flatnonzero(is_placed).tolist():
+        is_placed[state] = registry.properties(state).get("half") != "upper"
+    return is_placed
 
 
 def _kind_of(registry: Registry, name: str) -> str | None:
