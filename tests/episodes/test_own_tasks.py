@@ -131,6 +131,8 @@ def test_wrong_rules_are_refused(own: Path, old: str, new: str, told: str) -> No
     with pytest.raises(bn.BeliefNestError, match=r"hunt\.yaml:\d+: ") as caught:
         bn.Task.load("hunt.yaml", 1, condition=2)
     assert told in str(caught.value)
+    # What is wrong in the file is told as such, and not as what most draws break.
+    assert ("draws" in str(caught.value)) is ("draws" in told)
 
 
 def test_seeds_of_a_study_are_instances_of_a_file(own: Path) -> None:

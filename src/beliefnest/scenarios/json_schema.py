@@ -1,6 +1,7 @@
 """JSON schema of scenario files, generated from the types in `format`, for editors and errors."""
 
 from collections.abc import Iterable
+from functools import cache
 from inspect import cleandoc
 from typing import Any
 
@@ -63,6 +64,7 @@ def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
     return inner
 
 
+@cache
 def _form() -> dict[str, Any]:
     """Return the JSON schema of a scenario file after parameters are filled in."""
     _, definitions = msgspec.json.schema_components(
@@ -74,11 +76,7 @@ def _form() -> dict[str, Any]:
         entry["description"] = cleandoc(entry["description"]).partition("\n\nAttributes:")[0]
     strict, written = definitions["ScenarioFile"], definitions.pop("WrittenFile")
     definitions["ScenarioFile"] = {**strict, "properties": written["properties"]}
-    overriding = {
-        key: dict(value)
-        for key, value in definitions["ScenarioFile"]["properties"].items()
-        if key != "conditions"
-    }
+    overriding = {k: dict(v) for k, v in written["properties"].items() if k != "conditions"}
     overriding["agents"] = _mapping_of(_override_of("AgentEntry", definitions))
     overriding["perception"] = _override_of("Perception", definitions)
     overriding["map"] = _override_of("MapEntry", definitions)
