@@ -95,7 +95,7 @@ class GroupCell:
 
 
 class _PlayedGroup(msgspec.Struct):
-    """What `GroupCell.play` returns."""
+    """Result of `GroupCell.play`."""
 
     error: None
     search: list[bool]
