@@ -1,8 +1,10 @@
 """Packages of others add worlds, tasks, policies, filters, suites and commands."""
 
 import json
+import os
 import re
 import tomllib
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,7 @@ from tests.installing import install
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.importing import installed_names
 from beliefnest.prompts import Renderer
 from beliefnest.prompts.builtin import BUILT_IN
 from beliefnest.prompts.filterset import installed_filters
@@ -128,3 +131,20 @@ def test_a_name_of_beliefnests_own_is_told_to_be_taken(
         "the task 'joint-lift'",
     ]
     assert all("is not used: BeliefNest has a " in line for line in lines)
+
+
+def test_what_packages_declare_is_read_anew_only_when_one_is_installed(tmp_path, monkeypatch):
+    read = []
+
+    def counted(**chosen):
+        read.append(chosen)
+        return entry_points(**chosen)
+
+    monkeypatch.setattr("beliefnest.importing.entry_points", counted)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    for number, name in enumerate(("pond", "meadow"), start=1):
+        install(tmp_path, name, f"[beliefnest.worlds]\n{name} = {name}:World\n")
+        os.utime(tmp_path, (number, number))  # Installed in one tick of the clock, they differ.
+        assert {name} < {*installed_names("beliefnest.worlds")}
+        assert name not in installed_names("beliefnest.tasks")
+        assert len(read) == number
