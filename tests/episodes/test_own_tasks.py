@@ -122,6 +122,7 @@ def test_an_instance_is_the_same_under_all_conditions_and_given_values_stay(own:
         ("apart: 3, hidden", "apart: 30, hidden", "none of 2000 draws keeps the rules; most often"),
         ("  what:\n", "  what: {seen_by: [bob]}\n", "is a rule for places; give `within`, too"),
         ("  2: {", "  2: {instances: {box: {}}, ", "stands under a condition; put it at the top"),
+        ("  2: {", "  2: {agnts: {}, ", "agnts: unknown key; did you mean 'agents'?"),
         ("bob, items", "eve, items", "'eve'"),
     ],
 )
@@ -131,7 +132,7 @@ def test_wrong_rules_are_refused(own: Path, old: str, new: str, told: str) -> No
     with pytest.raises(bn.BeliefNestError, match=r"hunt\.yaml:\d+: ") as caught:
         bn.Task.load("hunt.yaml", 1, condition=2)
     assert told in str(caught.value)
-    # What is wrong in the file is told as such, and not as what most draws break.
+    # Mistakes of the file are told as such, and not as what most draws break.
     assert ("draws" in str(caught.value)) is ("draws" in told)
 
 

@@ -59,9 +59,9 @@ def drawn_instance(document: Document, seed: int, chosen: Mapping[str, object]) 
         ScenarioError: The scenario or a rule is wrong, or no draw keeps all rules.
     """
     drawing = _Drawing.of(document, chosen)
-    # A draw that makes no scenario is rejected; what is wrong in every draw is said at once. Given
-    # values need not fit the defaults of parameters that are drawn.
-    written = scenario_in(document, None)
+    # A draw that makes no scenario is rejected; say at once what is wrong in the file. Given values
+    # need not fit the defaults of parameters that are drawn.
+    written, *_ = [scenario_in(document, each) for each in drawing.conditions]
     check_declared(document, drawing.declared, chosen)
     drawing.check_agents(written.setting.snapshot.agents)
     chance = random.Random(f"{written.setting.name} {seed}")

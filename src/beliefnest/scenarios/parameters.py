@@ -180,7 +180,7 @@ def with_parameters(
         ScenarioError: A parameter is not declared, a constraint is broken, or `${...}` cannot be
             parsed.
     """
-    _check_instances(document)
+    _check_instances(document, condition)
     declared = declared_in(document, condition)
     check_declared(document, declared, named)
     if not declared:
@@ -250,18 +250,18 @@ def _names_within(node: YamlNode) -> frozenset[str]:
     return frozenset(names)
 
 
-def _check_instances(document: Document) -> None:
+def _check_instances(document: Document, condition: int | None) -> None:
     """Refuse rules of instances under a condition."""
     conditions = document.root.value.get("conditions")
     if conditions is None or not isinstance(conditions.value, dict):
         return
-    for number, written in conditions.value.items():
-        if isinstance(written.value, dict) and "instances" in written.value:
-            raise document.fault(
-                ("conditions", str(number), "instances"),
-                "stands under a condition; put it at the top of the file: an instance is the same "
-                "under all conditions",
-            )
+    written = conditions.value.get(condition)
+    if written is not None and isinstance(written.value, dict) and "instances" in written.value:
+        raise document.fault(
+            ("conditions", str(condition), "instances"),
+            "stands under a condition; put it at the top of the file: an instance is the same "
+            "under all conditions",
+        )
 
 
 def _without_declarations(root: YamlNode) -> YamlNode:
