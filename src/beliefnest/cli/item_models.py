@@ -1,6 +1,6 @@
 """`beliefnest items --models` and `--verify-results`: models on a set of items, compared."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -67,8 +67,7 @@ def run_models(options: ItemsOptions) -> int:
     results = folder / RESULTS
     before = results.read_bytes() if results.is_file() else b""
     replace_file(results, with_others(results_of(items, result.rows), before))
-    subjects = dict.fromkeys(str(row["model"]) for row in result.rows)
-    lines = [*notes, *_left_out(items), *_figure(result, folder, subjects), f"results: {results}"]
+    lines = [*notes, *_left_out(items), *_figure(result, folder), f"results: {results}"]
     _print(options, {"folder": str(folder)}, result.rows, lines, gaps)
     check_all_played(result)
     return 0
@@ -101,8 +100,8 @@ def _check_same_set(items: PublishedSet, folder: Path) -> None:
     if not place.has_plan:
         return
     before = place.plan()
-    # Folders of earlier versions have no digest, and are asked anew.
-    there = (*before["suites"], before["version"], before.get("digest", "no digest"))
+    # Folders of earlier versions have no digest, so that nothing tells what was asked.
+    there = (*before["suites"], before["version"], before.get("digest", "unknown"))
     own = (items.name, items.version, items.digest)
     if there != own:
         theirs, ours = (f"{name} {version} ({key[:8]})" for name, version, key in (there, own))
@@ -132,15 +131,16 @@ def _left_out(items: PublishedSet) -> Iterator[str]:
         yield f"not asked: {counted(left, 'item')} without options"
 
 
-def _figure(result: StudyResult, folder: Path, subjects: Collection[str]) -> Iterator[str]:
+def _figure(result: StudyResult, folder: Path) -> Iterator[str]:
     """Draw accuracy by order and model, and tell where, or that matplotlib is missing."""
     try:
         figure = result.plot(["order", "model"])
     except MissingExtraError as error:
         yield f"no figure: {error}"
         return
-    if len(subjects) == 1:  # Nothing else names the one.
-        figure.axes[0].set_title(", ".join(subjects), fontsize="medium")
+    models = {str(row["model"]) for row in result.rows}
+    if len(models) == 1:  # Nothing else names it.
+        figure.axes[0].set_title(models.pop(), fontsize="medium")
     for ending in ("svg", "pdf", "png"):
         figure.savefig(folder / f"accuracy.{ending}")
     yield f"figure: {folder / 'accuracy.svg'}, and as PDF and PNG"

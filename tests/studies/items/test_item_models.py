@@ -185,6 +185,18 @@ def test_results_of_another_set_are_not_replaced(other, tmp_path, capsys):
     assert (tmp_path / "out" / "results.jsonl").read_bytes() == before
 
 
+def test_results_of_a_set_without_a_digest_are_not_replaced(tmp_path, capsys):
+    ItemSet("own", ITEMS, ()).write(tmp_path / "set")
+    command = ["items", str(tmp_path / "set"), "--models", "chance", "-o", str(tmp_path / "out")]
+    assert run_command_line(command) == 0
+    plan = tmp_path / "out" / "study.json"
+    content = json.loads(plan.read_text(encoding="utf-8"))
+    del content["digest"]
+    plan.write_text(json.dumps(content), encoding="utf-8")
+    assert run_command_line(command) == 2
+    assert "has results of the set own 1.0.0 (unknown)" in " ".join(capsys.readouterr().err.split())
+
+
 def answer(participant, number, response, **values):
     """Return a row of the page for participants."""
     row = {"participant": participant, "cell": f"scene {number}", "question": "1.1"}
