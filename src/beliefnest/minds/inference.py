@@ -369,9 +369,10 @@ class Inference:
         return shares
 
     def _parts_of(self, factor: str) -> tuple[str, str]:
-        if factor not in self.parts:
-            raise InputError(f"no factor {factor!r}; there are {', '.join(self.factors)}")
-        return self.parts[factor]
+        parts = self.parts
+        if factor not in parts:
+            raise InputError(f"no factor {factor!r}; there are {', '.join(parts)}")
+        return parts[factor]
 
     def _marginal_of(self, factor: str, number: int) -> dict[Any, float]:
         kind, name = self._parts_of(factor)

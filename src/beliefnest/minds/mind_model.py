@@ -197,7 +197,9 @@ class MindModel:
             kinds = ("credence", "credence_now", "actual")
             parts += [(kind, name) for kind in kinds for name in self.alternative_names]
         named = {f"{kind}.{name}": (kind, name) for kind, name in parts}
-        return named | ({"rationality": ("rationality", "")} if len(self.rationalities) > 1 else {})
+        if len(self.rationalities) > 1:
+            named["rationality"] = ("rationality", "")
+        return named
 
     @property
     def observer_doubts(self) -> bool:

@@ -9,7 +9,6 @@ import math
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
 from typing import Literal
 
 import numpy as np
@@ -84,9 +83,9 @@ class Rule:
         claims = _sayable(view, mind)
         if self.tells == "tell" and claims:
             place = chosen(self.take, list(claims.values()), view)
-            claims = {claim: at for claim, at in claims.items() if at == place}
-        most = 1 if self.tells == "tell" else len(claims)
-        yield from map(said, islice(claims, most))
+            yield said(next(claim for claim, at in claims.items() if at == place))
+        else:
+            yield from map(said, claims)
 
     def _deeds(self, view: AgentView, mind: Imagination) -> Iterator[Call]:
         goals = _goals_of(view)
