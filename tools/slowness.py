@@ -7,9 +7,10 @@ from time import process_time
 
 _QUIET_SUM_S = 0.2
 _QUIET_LOOK_S = 0.36
-"""Processor times of the two samples on a quiet machine of the kind that runs `.ci/run`. The second
-is that of a machine on which the same tests took two thirds of the time that they took on the one
-where it was measured."""
+"""Processor times of the two samples on a quiet machine of the kind that runs `.ci/run`.
+
+The second is estimated: two thirds of 0.54 s, which it took on a machine whose tests took one and a
+half times as long."""
 _ENTRIES = 500_000
 
 

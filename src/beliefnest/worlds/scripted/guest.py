@@ -84,7 +84,7 @@ class Guest:
 
     @property
     def is_full(self) -> bool:
-        """True if all its memory was in use at some time."""
+        """True if its memory has grown to its limit; it never shrinks."""
         return self._engine.size >= parts().limits.memory
 
     def result(self) -> dict[str, Any] | None:

@@ -148,7 +148,7 @@ class Guest {
     return this.limits.fuel + GRACE - this.interpreter.fuel.value
   }
 
-  /** Return true if all memory of the guest was in use at some time; it never shrinks. */
+  /** Return true if the guest's memory has grown to its limit; it never shrinks. */
   get isFull () {
     return this.interpreter.glue.HEAPU8.length >= this.limits.memory
   }

@@ -15,8 +15,8 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 /**
  * Describe the outcome of a run.
  * @param {{ok: boolean, error?: object, stray?: boolean, ended?: import('./engine').GuestEnded, full: boolean}} outcome
- *   outcome of the session; with `stray` the error is that of a promise without a handler, with `full` all memory was in
- *   use
+ *   outcome of the session; with `stray` the error is that of a promise without a handler, with `full` memory has grown
+ *   to its limit
  * @param {{locate: function, callee: function, statement: function}} program
  * @param {{fuel: number, memory: number}} limits
  * @param {number} last number of the statement that was executed last; 0 for none
@@ -44,8 +44,8 @@ function ofEnd ({ kind, message, guestStack }, limits) {
 function ofError (error, limits, full) {
   const { message, name, skill, stack, kind, reason } = plainError(error)
   // Without room even for its error about memory, the interpreter throws null.
-  const isFull = full && error?.thrown === true && error.name === 'object' && error.message === 'null'
-  const limit = isFull ? 'memory' : limitOf(name, message)
+  const lacksRoom = full && error?.thrown === true && error.name === 'object' && error.message === 'null'
+  const limit = lacksRoom ? 'memory' : limitOf(name, message)
   if (limit) return { message: limitMessage(limit, limits), skill: null, kind: limit, stack }
   const prefix = name === 'Error' || kind !== null || message.startsWith(`${name}:`) ? '' : `${name}: `
   return { message: prefix + message, skill, kind: kind ?? 'error', reason, stack }
