@@ -1,12 +1,42 @@
 """Programs of literal calls have the outcome that the interpreter gives them."""
 
+from typing import Any
+
 import pytest
 
 import beliefnest as bn
+from beliefnest.skills.calls import Call, program_of
+from beliefnest.timeline.run_records import Senses
 from beliefnest.worlds.scripted.literal_program import literal_calls
 
 SKILLS = ("goToPosition", "getItemFromChest", "say", "whisper", "think", "waitTicks", "waitForChat")
+
+
+def looks(*places: tuple[float, float, float]) -> str:
+    """Return the program that opens containers, in a block each if it is not the only one."""
+    return program_of([Call("openContainer", (place,)) for place in places])
+
+
+CHEST, MORE, WALLED, BARE = (4, 1, 4), (7, 1, 2), (0, 1, 9), (6, 1, 6)
+"""A chest, a second one, one that cannot be reached, and a place without."""
+OPENING = f"const container = await bot.openContainer(bot.blockAt(new Vec3{CHEST}))"
 LITERAL = [
+    looks(CHEST),
+    looks(BARE),
+    looks(WALLED),
+    looks((400, 1, 4)),
+    looks((4.5, 1.25, 4.5)),
+    looks((-3, 1, 4)),
+    program_of([Call("say", ("a",)), Call("openContainer", (CHEST,)), Call("think", ("b",))]),
+    program_of([Call("openContainer", (CHEST,)), Call("openContainer", (MORE,))]),
+    program_of([Call("openContainer", (MORE,)), Call("openContainer", (BARE,))]),
+    program_of([Call("openContainer", (BARE,)), Call("openContainer", (MORE,))]),
+    f"{OPENING}\ncontainer.close()",
+    f"{OPENING.replace('4, 1, 4', '9, 1, 9')}; container.close();",
+    f"{OPENING.replace('4, 1, 4', '400, 1, 4')}\ncontainer.close()",
+    f"  {{ // look\n  {OPENING} // in\n  container.close() }}\n{OPENING}\ncontainer.close()",
+    f"await waitTicks(bot, 38)\r\n{OPENING}\ncontainer.close()",
+    "{ await say(bot, 'a') }",
     "",
     "// nothing",
     "await goToPosition(bot, new Vec3(-2, 51, 0.5), 0);",
@@ -33,6 +63,35 @@ LITERAL = [
     "await say (bot, '\u00e9\u2028') // \U0001f680\r\n// more\nawait say(bot, '', )",
 ]
 OTHERS = [
+    OPENING,
+    f"{OPENING}\ncontainer.close()\n{OPENING}\ncontainer.close()",
+    f"{OPENING}\nawait say(bot, 'a')\ncontainer.close()",
+    f"{OPENING}\ncontainer.close()\ncontainer.close()",
+    f"{OPENING}\n{{ container.close() }}",
+    f"{OPENING}\ncontainer.close(1)",
+    f"{OPENING}\ncontainer?.close()",
+    f"{OPENING}\nother.close()",
+    "container.close()",
+    f"{OPENING.replace('const', 'let')}\ncontainer.close()",
+    f"{OPENING.replace('container', 'bot', 1)}\ncontainer.close()",
+    f"{OPENING.replace('await ', '')}\ncontainer.close()",
+    f"{OPENING}, leak = 1\ncontainer.close()",
+    f"{OPENING.replace('openContainer', 'openChest')}\ncontainer.close()",
+    f"{OPENING.replace('blockAt', 'blockOf')}\ncontainer.close()",
+    f"{OPENING.replace('bot.open', 'bot?.open')}\ncontainer.close()",
+    f"{OPENING.replace('4, 1, 4', '4, 1, 1000000')}\ncontainer.close()",
+    f"{OPENING.replace('4, 1, 4', '4, 1')}\ncontainer.close()",
+    f"{OPENING.replace('4))', '4), true)')}\ncontainer.close()",
+    f"{OPENING.replace('4))', '4)), true')}\ncontainer.close()",
+    f"await bot.openContainer(bot.blockAt(new Vec3{CHEST}))",
+    "await bot.openContainer(bot, new Vec3(4, 1, 4))",
+    f"await openContainer(bot, new Vec3{CHEST})",
+    f"const container = await goToPosition(bot, new Vec3{CHEST})\ncontainer.close()",
+    f"{{ {{ {OPENING}\ncontainer.close() }} }}",
+    "{ }",
+    "await\rwaitTicks(bot, 500)",
+    OPENING.replace("= ", "=\n") + "\ncontainer.close()",
+    "{ await say(bot, 'a') } " * 101 + "{ await say(bot, 'a'); await say(bot, 'a') }" * 50,
     "globalThis.leak = 1;",
     "await say(bot, [].constructor.constructor('leak = 1')());",
     "await say(bot, `${Array.prototype.leak = 1}`);",
@@ -81,23 +140,46 @@ OTHERS = [
 ]
 
 
+def played(code: str, bob: str, senses: Senses, timeout_ticks: int) -> list[Any]:
+    """Return all that a program of Ann leaves behind, while Bob plays his."""
+    sides = {(x, y, z): "stone" for x in (0, 1) for y in (1, 2) for z in (8, 9)}
+    del sides[WALLED]
+    floor = {(x, 0, z): "stone" for x in range(10) for z in range(10)}
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (9, 3, 9)),
+        {**floor, **sides, (7, 1, 5): "air", (9, 1, 9): "barrel"},
+        agents={"ann": (1.5, 1, 1.5), "bob": (5.5, 1, 1.5)},
+        containers={CHEST: {"apple": 1}, MORE: {"oak_log": 2}, WALLED: {}},
+    )
+    with bn.Nest(world) as nest:
+        programs = {"ann": code, "bob": bob}
+        result = nest["/"].run_all(programs, timeout_ticks, senses, past={})["ann"]
+        views = [nest[path].state for path in ("/", "/ann", "/bob", "/ann/bob")]
+        return [result, nest["/"].tick, *views]
+
+
+@pytest.mark.parametrize("senses", ["world", "percepts"])
 @pytest.mark.parametrize("code", LITERAL)
-def test_programs_of_literal_calls_end_as_the_interpreter_ends_them(code: str) -> None:
+def test_programs_of_literal_calls_end_as_the_interpreter_ends_them(
+    code: str, senses: Senses
+) -> None:
     assert literal_calls(code, SKILLS) is not None
-    outcomes = []
     # An empty statement at the end makes it a program for the interpreter.
-    for text in (code, f"{code}\n;;"):
-        world = bn.ScriptedWorld(
-            ((0, 0, 0), (9, 3, 9)),
-            agents={"ann": (1.5, 1, 1.5), "bob": (5.5, 1, 1.5)},
-            containers={(4, 1, 4): {"apple": 1}},
-        )
-        with bn.Nest(world) as nest:
-            result = nest["/"].run_all({"ann": text, "bob": "bot.chat('hi')"}, 40)["ann"]
-            outcomes.append(
-                (result.error, result.ticks, result.happened, result.unfinished, result.aims)
-            )
-    assert outcomes[0] == outcomes[1]
+    first, second = (played(text, "bot.chat('hi')", senses, 40) for text in (code, f"{code}\n;;"))
+    assert first == second
+
+
+def test_a_time_that_ends_while_containers_are_opened_makes_no_difference() -> None:
+    code, unfinished = looks(CHEST, MORE), set()
+    for ticks in range(1, 7):
+        first, second = (played(text, "", "percepts", ticks) for text in (code, f"{code}\n;;"))
+        assert first == second
+        unfinished |= {(each.what, each.line) for each in first[0].unfinished}
+    walks, opens = (
+        {("goToPosition", 1), ("goToPosition", 4)},
+        {("openContainer", 2), ("openContainer", 5)},
+    )
+    assert unfinished == walks | opens
 
 
 @pytest.mark.parametrize("code", OTHERS)

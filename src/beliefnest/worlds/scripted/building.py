@@ -78,13 +78,8 @@ def _is_powered(hand: Hand, place: Position, kind: str) -> bool:
         raise SkillError(
             f"there is no {called} at {place}, but {there}. Give the position of a {called}."
         )
-    return registry.properties(_state_at(hand, place))["powered"] == "true"
+    return registry.properties(hand.world.state_at(place))["powered"] == "true"
 
 
 def _name_at(hand: Hand, place: Position) -> str:
-    return Registry.load().name(_state_at(hand, place))
-
-
-def _state_at(hand: Hand, place: Position) -> int:
-    world = hand.world
-    return world.state_at(place)
+    return Registry.load().name(hand.world.state_at(place))

@@ -96,26 +96,23 @@ class Desk:
 
     def admit_skill(self, name: str, wires: Sequence[Any], facts: DeskFacts) -> dict[str, Any]:
         """Check a call of a skill; see `admitSkill` in desk.js."""
-        admission: dict[str, Any] = self._remembered("admitSkill", name, wires, facts.plain)
-        return admission
+        return self._remembered("admitSkill", name, wires, facts.plain)
 
     def admit_call(
         self, kind: str, name: str, wires: Sequence[Any], facts: DeskFacts
     ) -> dict[str, Any]:
         """Check a call of a method of a game object; see `admitCall` in desk.js."""
-        admission: dict[str, Any] = self._ask("admitCall", kind, name, wires, facts.plain)
-        return admission
+        return self._remembered("admitCall", kind, name, wires, facts.plain)
 
-    def _remembered(self, *request: object) -> Any:
+    def _remembered(self, *request: object) -> dict[str, Any]:
         """Return the answer to a request, if possible without asking: equal ones are frequent."""
         text = json.dumps(request)
-        if len(text) > _LONGEST_KEPT:
-            return self._asked(text)
-        if text not in self._answers:
-            self._answers[text] = self._asked(text)
+        answer: dict[str, Any] = self._answers.get(text) or self._asked(text)
+        if len(text) <= _LONGEST_KEPT:
+            self._answers[text] = answer
             while len(self._answers) > _MOST_KEPT:
                 del self._answers[next(iter(self._answers))]
-        return self._answers[text]
+        return answer
 
     def _ask(self, *request: object) -> Any:
         return self._asked(json.dumps(request))

@@ -96,10 +96,8 @@ class Ground:
         doors: Doorways = Doorways.OPEN,
     ) -> None:
         self._registry, self._box = registry, box
-        if not isinstance(blocks, Terrain):
-            blocks = Terrain.of_one(blocks)
-        self._blocks = blocks
-        self._footing = Footing(registry, box, blocks, doors)
+        self._blocks = blocks if isinstance(blocks, Terrain) else Terrain.of_one(blocks)
+        self._footing = Footing(registry, box, self._blocks, doors)
         self.has_doors = self._footing.has_doors
         self._lines: dict[tuple[Position, Position], bool] = {}
         self._ways: dict[tuple[Position, WalkGoal], tuple[Position, ...] | None] = {}

@@ -261,9 +261,8 @@ def _skipped(hand: Hand, steps: Sequence[Position]) -> int:
 
 def _step_to(hand: Hand, feet: Point, ahead: Point) -> None:
     """Take a step from one place of the feet to another, with the view ahead."""
-    hand.world.walk_to(
-        hand.name, ahead, yaw=math.atan2(-(ahead[0] - feet[0]), -(ahead[2] - feet[2]))
-    )
+    yaw = math.atan2(-(ahead[0] - feet[0]), -(ahead[2] - feet[2]))
+    hand.world.place_agent(hand.name, ahead, yaw, pitch=0.0)
 
 
 def point_in(name: str, value: Any) -> Point:

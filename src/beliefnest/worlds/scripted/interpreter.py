@@ -173,8 +173,7 @@ class Interpreter:
     def evaluate(self, code: str, file: str) -> int:
         """Run a text and return its value; raises GuestError."""
         place, name = self._characters(code), self._characters(file)
-        length = len(_bytes(code))
-        value = self._do("QTS_Eval", self._context, place, length, name, 0, 0)
+        value = self._do("QTS_Eval", self._context, place, len(_bytes(code)), name, 0, 0)
         self._do("free", place)
         self._do("free", name)
         return self._checked(value)
@@ -216,10 +215,8 @@ class Interpreter:
         error = self._do("QTS_ResolveException", self._context, value)
         if error == 0:
             return value
-        name, message, stack = (
-            self.text(self.member(error, key)) for key in ("name", "message", "stack")
-        )
-        raise GuestError(name, message, stack)
+        told = (self.text(self.member(error, key)) for key in ("name", "message", "stack"))
+        raise GuestError(*told)
 
     def _characters(self, text: str) -> int:
         characters = _bytes(text) + b"\0"

@@ -12,7 +12,7 @@ from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotBody, BotReads, OpenWindow, state_of
 from beliefnest.worlds.scripted.desk import Desk, DeskFacts, Prepared, TooIntricateError
 from beliefnest.worlds.scripted.guest import Guest, GuestEndedError, parsed, too_much
-from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
+from beliefnest.worlds.scripted.requests import Request, at_place, error_of, fault_of, is_near
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.sfc32 import Sfc32
 
@@ -20,12 +20,11 @@ _UNDEFINED = {"$": "u"}
 _NOTHING: Mapping[str, Any] = {"waitForChat": None}
 """Results, for programs, of skills that return nothing, where that is not `undefined`."""
 _NOBODY = 0
-_NEAR = 1_000_000
-"""Coordinates below this are in the world; the desk looks at others."""
 _ERROR_COST = 30_000
 """Fuel for an error that the desk describes, about what the desk itself computes for it."""
 _LOG_CUT = " ... (the rest of the output is left out)"
 _INTRICATE = "the program is too intricate to be read; write it in simpler parts"
+_TOO_LARGE = "the arguments are too large"
 _ELSEWHERE = 'open the nest with world="embedded" for that'
 _HAS: Mapping[str, tuple[str, ...]] = {
     "bot": (
@@ -84,12 +83,12 @@ class JavaScriptProgram:
         self._began: dict[int, int] = {}
         self._listeners: list[tuple[str, int, bool]] = []
         self._next = 1
-        self._log: list[str] = []
+        self.log: list[str] = []
         self._room = parts().limits.log_characters
         self._outcome: Mapping[str, Any] | None = None
         self._last = 0
         self._under: list[str] = []
-        self._fault: Fault | None = None
+        self.fault: Fault | None = None
 
     # For the host
 
@@ -100,7 +99,7 @@ class JavaScriptProgram:
         except TooIntricateError:
             prepared = {"message": _INTRICATE, "kind": "syntax"}
         if not isinstance(prepared, Prepared):
-            self._outcome, self._fault = {"ok": False}, fault_of(prepared)
+            self._outcome, self.fault = {"ok": False}, fault_of(prepared)
             return
         self._prepared = prepared
         guest = self._guest = Guest(self._answer, lambda: self._reads.now_ms, self._random.fraction)
@@ -158,19 +157,9 @@ class JavaScriptProgram:
         return made
 
     @property
-    def log(self) -> tuple[str, ...]:
-        """Lines that the program wrote to its console."""
-        return tuple(self._log)
-
-    @property
     def ended(self) -> bool:
         """True if the program has ended."""
         return self._outcome is not None
-
-    @property
-    def fault(self) -> Fault | None:
-        """Reason of its failure; None if it has not failed."""
-        return self._fault
 
     def unfinished(self, number: int, name: str) -> Unfinished:
         """Describe a call that was stopped."""
@@ -214,7 +203,7 @@ class JavaScriptProgram:
             error = self._desk.outcome(self._prepared, outcome, last, under)
         except TooIntricateError:
             error = {"message": _INTRICATE, "kind": "error"}
-        self._fault = fault_of(error or {})
+        self.fault = fault_of(error or {})
 
     def _wake(self, message: list[object]) -> None:
         """Send a message; its error ends the program, for nobody else can catch it."""
@@ -247,14 +236,12 @@ class JavaScriptProgram:
         self._guest.charge(cost.each + cost.character * min(len(text), most))
         try:
             answer = json.dumps({"ok": True, "value": self._asked(text)})
-        except RefusedError as error:
-            fault = {"$": "e", "message": str(error), "name": "Error", "skill": None}
-            return json.dumps({"ok": False, "value": {**fault, "kind": "refused"}})
         except _RequestError as error:
             return json.dumps({"ok": False, "value": error.wire})
-        except TooIntricateError:
-            fault = {"$": "e", "message": "the arguments are too large", "name": "Error"}
-            return json.dumps({"ok": False, "value": {**fault, "skill": None, "kind": "refused"}})
+        except (RefusedError, TooIntricateError) as error:
+            message = str(error) if isinstance(error, RefusedError) else _TOO_LARGE
+            fault = {"$": "e", "message": message, "name": "Error", "skill": None}
+            return json.dumps({"ok": False, "value": {**fault, "kind": "refused"}})
         self._guest.charge(cost.answered * len(answer))
         return answer
 
@@ -301,7 +288,7 @@ class JavaScriptProgram:
                 return _UNDEFINED
         if kind != "bot" or name not in _CALLS:
             raise self._lacks(kind, window, name)
-        if name == "blockAt" and _is_plain_place(wires):
+        if name == "blockAt" and is_near(wires):
             return self._reads.block(tuple(wires[0]["c"]))
         admission = self._desk.admit_call("bot", name, wires, self._facts)
         self._charge(admission)
@@ -354,9 +341,7 @@ class JavaScriptProgram:
         [target] = admission["checked"]
         if not isinstance(target, dict) or "position" not in target:
             raise RefusedError(f"the scripted world opens blocks alone; {_ELSEWHERE}")
-        place = [target["position"]]
-        admission = {**admission, "own": place, "checked": place}
-        return self._promise("openContainer", admission, "bot.openContainer")
+        return self._promise("openContainer", at_place(admission), "bot.openContainer")
 
     def _listen(self, event: str, wire: Any, once: bool) -> Any:
         if event not in parts().announced:
@@ -388,12 +373,12 @@ class JavaScriptProgram:
 
     def _write(self, _: str, text: str) -> Any:
         limits = parts().limits
-        if len(self._log) >= limits.log_lines or self._room <= 0:
+        if len(self.log) >= limits.log_lines or self._room <= 0:
             return None
         written = text[: self._room]
         self._room -= len(written)
-        is_last = len(self._log) == limits.log_lines - 1 or self._room <= 0
-        self._log.append(f"{written}{_LOG_CUT}" if is_last else written)
+        is_last = len(self.log) == limits.log_lines - 1 or self._room <= 0
+        self.log.append(f"{written}{_LOG_CUT}" if is_last else written)
         return None
 
     def _timer(self, *_: Any) -> Any:
@@ -433,17 +418,13 @@ class JavaScriptProgram:
         others = enumerate(self._reads.others, 1)
         return _plain({str(number): self._body(name) for number, name in others})
 
-    @property
-    def _inventory(self) -> Any:
-        return self._handle("window", self._bag)
-
 
 _GETS: Mapping[str, Callable[[JavaScriptProgram], Any]] = {
     "username": lambda program: program._reads.name,
     "entity": lambda program: program._body(program._reads.name),
     "players": lambda program: program._players,
     "entities": lambda program: program._entities,
-    "inventory": lambda program: program._inventory,
+    "inventory": lambda program: program._handle("window", program._bag),
     "health": lambda program: program._reads.me.health,
     "food": lambda program: program._reads.me.food,
 }
@@ -475,13 +456,6 @@ _ACTIONS: Mapping[str, Callable[..., Any]] = {
     "state": lambda _, state: state_of(state),
     "settled": JavaScriptProgram._settled,
 }
-
-
-def _is_plain_place(wires: list[Any]) -> bool:
-    """Return True for a place that needs no check by the desk: programs read many blocks."""
-    if not wires or not isinstance(wires[0], dict) or wires[0].get("$") != "v":
-        return False
-    return all(type(part) in (int, float) and abs(part) < _NEAR for part in wires[0]["c"])
 
 
 def _plain(value: Any) -> Any:

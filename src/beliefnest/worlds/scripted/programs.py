@@ -11,13 +11,13 @@ from typing import Any
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.event_words import Announcement, announced
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Event, Point
+from beliefnest.world.values import Event
 from beliefnest.worlds.protocol import Aim, Fault, ProgramResult, RunRules, Sensed, SenseSource
 from beliefnest.worlds.scripted.bot_reads import BotReads
 from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.ground_cache import Grounds
-from beliefnest.worlds.scripted.hand import Doing, Hand, SkillError
+from beliefnest.worlds.scripted.hand import Doing, Hand, SkillError, point_in
 from beliefnest.worlds.scripted.javascript_program import JavaScriptProgram
 from beliefnest.worlds.scripted.literal_program import LiteralProgram, literal_calls
 from beliefnest.worlds.scripted.program_memory import Memory
@@ -111,8 +111,7 @@ class RunningPrograms:
         world.listen(self._hear)
         try:
             self._runs = [
-                self._begun(agent, code, senses, f"{seed} {_begin_of(rules, agent, world.now)}")
-                for agent, code in programs.items()
+                self._begun(agent, code, senses, seed) for agent, code in programs.items()
             ]
         except BaseException:
             self.leave()
@@ -195,8 +194,9 @@ class RunningPrograms:
             ground=ground,
             speech_ticks=rules.speech_ticks,
         )
-        program = self._program(BotReads(world, agent, sense), code, f"{seed} {agent}")
         past = rules.past.get(agent)
+        begin = world.now if past is None else past.tick
+        program = self._program(BotReads(world, agent, sense), code, f"{seed} {begin} {agent}")
         missed = () if past is None else sense().announced
         run = _Run(
             hand, program, sense, missed=missed, memory=Memory(() if past is None else past.calls)
@@ -215,12 +215,6 @@ class RunningPrograms:
     def _hear(self, frame: Frame) -> None:
         self._happened.extend((frame.tick, event) for event in frame.events)
         self._latest[:] = frame.events
-
-
-def _begin_of(rules: RunRules, agent: str, now: int) -> int:
-    """Return the tick at which a program first began."""
-    past = rules.past.get(agent)
-    return now if past is None else past.tick
 
 
 def _said_to(agent: str, events: Sequence[Event]) -> list[Event]:
@@ -324,13 +318,8 @@ def _told(error: Exception) -> dict[str, object]:
 
 
 def _aim(tick: int, made: Mapping[str, Any]) -> Aim:
-    place = None if made["place"] is None else _point(made["place"])
+    place = None if made["place"] is None else point_in("position", made["place"])
     return Aim(tick, made["call"], place, made["agent"], made["uses"])
-
-
-def _point(value: Sequence[float]) -> Point:
-    x, y, z = value
-    return (float(x), float(y), float(z))
 
 
 def _result(
@@ -343,7 +332,7 @@ def _result(
         error=fault,
         ticks=(run.end_tick or first) - first,
         happened=happened,
-        log=run.program.log,
+        log=tuple(run.program.log),
         unfinished=tuple(
             run.program.unfinished(number, name)
             for number, name in sorted(

@@ -1,11 +1,14 @@
 """Requests of programs of the scripted world, and the errors that answer them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from beliefnest.skills.manifests import skills
 from beliefnest.worlds.protocol import Fault
+
+_NEAR = 1_000_000
+"""Coordinates below this are in the world; the desk looks at others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +36,19 @@ class Request:
         """Return a request as the desk admitted it."""
         own, checked = admission.get("own", []), admission.get("checked", [])
         return cls(number, name, own, checked, admission.get("aim"), admission.get("error"))
+
+
+def is_near(wires: Sequence[Any]) -> bool:
+    """Return True for a place that needs no check by the desk: programs read many blocks."""
+    if not wires or not isinstance(wires[0], dict) or wires[0].get("$") != "v":
+        return False
+    return all(type(part) in (int, float) and abs(part) < _NEAR for part in wires[0]["c"])
+
+
+def at_place(admission: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the admission of a call for a block, with the block's place as its argument."""
+    place = [admission["checked"][0]["position"]]
+    return {**admission, "own": place, "checked": place}
 
 
 def error_of(name: str, error: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -82,14 +82,13 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
     def use(hand: Hand, position: Any) -> Doing:
         place = block_in(position)
         yield from walk_to_use(hand, place)
-        world = hand.world
-        there = world.state_at(place)
+        there = hand.world.state_at(place)
         if is_open(Registry.load(), there) is to_open:
             return
         if not is_door(Registry.load().name(there)):
             raise hand.lacking("door", place, "Give the position of a door.")
         yield 0
-        world.use_door(hand.name, place, open=to_open)
+        hand.world.use_door(hand.name, place, open=to_open)
 
     return use
 
@@ -126,8 +125,7 @@ def _read_sign(hand: Hand, position: Any) -> Doing:
     place = block_in(position)
     if hand.known().is_sign(place) is False:
         raise hand.lacking("sign", place, _SIGN)
-    x, y, z = place
-    yield from _look_at(hand, (x + 0.5, y + 0.5, z + 0.5))
+    yield from _look_at(hand, tuple(part + 0.5 for part in place))
     yield 0
     if not hand.known().is_sign(place):
         raise SkillError(f"no sign is to be seen at {place}. Go nearer, or look somewhere else.")
@@ -274,12 +272,8 @@ def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
         yield from walk_to_use(hand, place)
     yield 0
     hand.check_touch(place, "the container")
-    _check_container(hand, place)
-    hand.world.open(hand.name, place)
-
-
-def _check_container(hand: Hand, place: Position) -> None:
     try:
         hand.world.contents(place)
     except WorldError:
         raise hand.lacking("chest", place, _CHEST) from None
+    hand.world.open(hand.name, place)

@@ -66,7 +66,9 @@ class ScriptedState(Barred):
 
     def agent(self, name: str) -> AgentState:
         """Return the state of an agent; WorldError if there is none of that name."""
-        return self._agent(name)
+        if name not in self._facts.agents:
+            raise WorldError(f"no agent {quoted(name)}; agents are {sorted(self._facts.agents)}")
+        return self._facts.agents[name]
 
     def state_of(self, name: str) -> AgentState | None:
         """Return the state of an agent; None if there is none of that name."""
@@ -222,7 +224,7 @@ class ScriptedState(Barred):
         inventory: dict[str, int] | None = None,
         equipment: dict[str, str] | None = None,
     ) -> None:
-        agent = self._agent(name)
+        agent = self.agent(name)
         items = agent.inventory if inventory is None else inventory
         worn = agent.equipment if equipment is None else equipment
         gone = agent.inventory.keys() - items.keys()
@@ -231,11 +233,6 @@ class ScriptedState(Barred):
             inventory=items,
             equipment={slot: item for slot, item in worn.items() if item not in gone},
         )
-
-    def _agent(self, name: str) -> AgentState:
-        if name not in self._facts.agents:
-            raise WorldError(f"no agent {quoted(name)}; agents are {sorted(self._facts.agents)}")
-        return self._facts.agents[name]
 
     def _container(self, position: Position) -> Position:
         """Return the position of the container to which the block at a position belongs."""

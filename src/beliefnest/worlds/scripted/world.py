@@ -211,7 +211,7 @@ class ScriptedWorld(PoweredState):
     ) -> None:
         """Move an agent to a feet position in blocks; angles are Mineflayer's radians."""
         with self._act() as pending:
-            agent = self._agent(name)
+            agent = self.agent(name)
             turn = float(agent.yaw if yaw is None else yaw)
             tilt = float(agent.pitch if pitch is None else pitch)
             if not (math.isfinite(turn) and math.isfinite(tilt)):
@@ -219,19 +219,12 @@ class ScriptedWorld(PoweredState):
             self._facts.agents[name] = agent.moved(self._feet(position), turn, tilt)
             pending.agents.add(name)
 
-    def walk_to(self, name: str, feet: Point, yaw: float) -> None:
-        """Move an agent to a place of its feet; it looks straight ahead along `yaw`."""
-        with self._act() as pending:
-            agent = self._agent(name)
-            self._facts.agents[name] = agent.moved(self._feet(feet), yaw, 0.0)
-            pending.agents.add(name)
-
     def set_block(self, position: Position, block: str, actor: str | None = None) -> None:
         """Replace a block; the content of a removed container is lost."""
         with self._act() as pending:
             place = self._inside(position)
             if actor is not None:
-                self._agent(actor)
+                self.agent(actor)
             before, state = self.state_at(place), self._state(block)
             if state != before:
                 self._change(pending, place, state, actor)
@@ -239,7 +232,7 @@ class ScriptedWorld(PoweredState):
     def use_door(self, name: str, position: Position, *, open: bool) -> None:
         """Let an agent open or shut a wooden door (both halves), trapdoor or fence gate."""
         with self._act() as pending:
-            self._agent(name)
+            self.agent(name)
             place = self._inside(position)
             moved = used_door(self._registry, self.state_at, place, opens=open)
             for part, state in moved.items():
@@ -250,7 +243,7 @@ class ScriptedWorld(PoweredState):
     def use_lever(self, name: str, position: Position, *, powered: bool) -> None:
         """Let an agent switch a lever on or off, and with it what the lever powers."""
         with self._act() as pending:
-            self._agent(name)
+            self.agent(name)
             place = self._inside(position)
             moved = switched_lever(self._registry, self.state_at, place, powered=powered)
             self._alter(pending, place, moved)
@@ -260,7 +253,7 @@ class ScriptedWorld(PoweredState):
     def press_button(self, name: str, position: Position) -> None:
         """Let an agent press a button, which comes out again later."""
         with self._act() as pending:
-            self._agent(name)
+            self.agent(name)
             place = self._inside(position)
             moved = pressed_button(self._registry, self.state_at, place)
             self._alter(pending, place, moved)
@@ -270,7 +263,7 @@ class ScriptedWorld(PoweredState):
     def mine(self, name: str, position: Position) -> None:
         """Let an agent break a block and take its drops."""
         with self._act() as pending:
-            agent = self._agent(name)
+            agent = self.agent(name)
             place = self._inside(position)
             state = self.state_at(place)
             drops = Handling.load().drops(self._registry.name(state), agent.inventory)
@@ -285,7 +278,7 @@ class ScriptedWorld(PoweredState):
     def put(self, name: str, item: str, position: Position) -> None:
         """Let an agent place a block from its inventory."""
         with self._act() as pending:
-            agent = self._agent(name)
+            agent = self.agent(name)
             place = self._inside(position)
             moved = self._items({item: 1})
             items = rest_of(agent.inventory, moved, f"{name} cannot put {item}: it")
@@ -309,7 +302,7 @@ class ScriptedWorld(PoweredState):
             claims: Claims of the text, for its readers.
         """
         with self._act() as pending:
-            self._agent(name)
+            self.agent(name)
             place = self._inside(position)
             self._write(place, text)
             block = pending.blocks[place] = self._block(place)
@@ -321,7 +314,7 @@ class ScriptedWorld(PoweredState):
     def arrive(self, name: str, destination: Point) -> None:
         """Let an agent reach its destination; agents that see it learn where it was going."""
         with self._act() as pending:
-            self._agent(name)
+            self.agent(name)
             x, y, z = (float(value) for value in destination)
             pending.events.append(Event(EventKind.MOVE_TO, name, {"destination": (x, y, z)}))
 
@@ -336,7 +329,7 @@ class ScriptedWorld(PoweredState):
     def open(self, name: str, position: Position) -> None:
         """Let an agent look into a container; other agents see the act, not the content."""
         with self._act() as pending:
-            self._agent(name)
+            self.agent(name)
             place = self._container(position)
             pending.events.append(Event(EventKind.OPEN_CONTAINER, name, {"position": place}))
 
@@ -349,8 +342,8 @@ class ScriptedWorld(PoweredState):
         with self._act() as pending:
             if name == other:
                 raise WorldError(f"{name} cannot whisper to itself")
-            self._agent(name)
-            self._agent(other)
+            self.agent(name)
+            self.agent(other)
             detail = self._claiming({"text": checked_utterance(text), "to": other}, claims)
             pending.events.append(Event(EventKind.CHAT, name, detail))
 
@@ -363,9 +356,9 @@ class ScriptedWorld(PoweredState):
         with self._act() as pending:
             if giver == receiver:
                 raise WorldError(f"{giver} cannot give items to itself")
-            other = self._agent(receiver)
+            other = self.agent(receiver)
             moved = self._items(items)
-            left = rest_of(self._agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
+            left = rest_of(self.agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
             self._set_agent(giver, inventory=left)
             self._set_agent(
                 receiver,
@@ -386,13 +379,10 @@ class ScriptedWorld(PoweredState):
             kind: Kind of the event.
             detail: Fields of `EventDetail` that were perceived.
         """
-        if kind is EventKind.BLOCK_UPDATE:
-            self._repeat_change(name, detail)
-        elif name is not None and kind in _REPEATED:
-            _REPEATED[kind](self, name, detail)
-
-    def _repeat_change(self, name: str | None, detail: Mapping[str, Any]) -> None:
-        if name is not None and "text" in detail:
+        if kind is not EventKind.BLOCK_UPDATE:
+            if name is not None and kind in _REPEATED:
+                _REPEATED[kind](self, name, detail)
+        elif name is not None and "text" in detail:
             claims = claims_from_plain(detail.get("claims", ()))
             self.write_sign(name, detail["position"], detail["text"], claims)
         else:
@@ -400,7 +390,7 @@ class ScriptedWorld(PoweredState):
 
     def _transfer(self, name: str, position: Position, items: Items, kind: EventKind) -> None:
         with self._act() as pending:
-            agent = self._agent(name)
+            agent = self.agent(name)
             place = self._container(position)
             moved = self._items(items)
             inventory, inside = agent.inventory, self._facts.containers[place]
@@ -422,7 +412,7 @@ class ScriptedWorld(PoweredState):
         self, kind: EventKind, name: str, text: str, claims: Iterable[ClaimLike] = ()
     ) -> None:
         with self._act() as pending:
-            self._agent(name)
+            self.agent(name)
             detail = self._claiming({"text": checked_utterance(text)}, claims)
             pending.events.append(Event(kind, name, detail))
 
