@@ -215,8 +215,8 @@ class Interpreter:
         error = self._do("QTS_ResolveException", self._context, value)
         if error == 0:
             return value
-        told = (self.text(self.member(error, key)) for key in ("name", "message", "stack"))
-        raise GuestError(*told)
+        fields = (self.text(self.member(error, key)) for key in ("name", "message", "stack"))
+        raise GuestError(*fields)
 
     def _characters(self, text: str) -> int:
         characters = _bytes(text) + b"\0"
