@@ -93,7 +93,7 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
     rows = [*written[0], *varied[0]]
     right = sum(_is_right(row) for row in rows)
     seconds = written[1] + varied[1]
-    about = f"{right} of {len(rows)} probes as expected, all conditions and copies, {seconds:.0f} s"
+    about = f"{right} of {len(rows)} probes as expected, all conditions and copies"
     if page is not None:
         _write_page(page, lines, about)
     report = {"claims": lines, "rows": len(rows), "right": right, "seconds": round(seconds, 1)}
@@ -101,7 +101,7 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
     for line in lines:
         table.add_row(*_cells(line))
     commands = dict.fromkeys(line["command"] for line in lines)
-    print_report(report, [table, *commands, about], as_json=as_json)
+    print_report(report, [table, *commands, f"{about}, {seconds:.0f} s"], as_json=as_json)
     return 0 if right == len(rows) else 1
 
 
@@ -117,8 +117,11 @@ def _played(study: Study, jobs: int, title: str) -> tuple[list[dict[str, Any]], 
 def _line(
     claim: _Claim, written: Sequence[Mapping[str, Any]], varied: Sequence[Mapping[str, Any]]
 ) -> dict[str, Any]:
-    own, copies = ([row for row in rows if _is_of(row, claim)] for rows in (written, varied))
-    (row,) = own
+    about = (claim.scenario, claim.condition, claim.probe)
+    (row,), copies = (
+        [row for row in rows if (row["scenario"], row["condition"], row["probe"]) == about]
+        for rows in (written, varied)
+    )
     place = row["opened"].split(" ")[0] if row["opened"] else _rounded(row["arrived"])
     verb = "opens" if row["opened"] else "arrives at"
     result = f"{row['agent']} {verb} {place}" if place else row["why_not"]
@@ -154,11 +157,6 @@ def _rounded(place: str) -> str:
     return ",".join(f"{round(2 * float(part)) / 2:g}" for part in place.split(",") if part)
 
 
-def _is_of(row: Mapping[str, Any], claim: _Claim) -> bool:
-    own = (claim.scenario, claim.condition, claim.probe)
-    return (row["scenario"], row["condition"], row["probe"]) == own
-
-
 _HEADINGS = (
     *("section of the paper", "belief asked", "the paper's claim, or what a control changes"),
     *("expected", "our result", "copies as expected", "run time", "where we differ"),
@@ -186,7 +184,7 @@ def _write_page(page: Path, lines: Sequence[Mapping[str, Any]], about: str) -> N
     content = (
         "# Reproduction\n\nWritten by `beliefnest reproduce --page docs/reproduction.md`, with the "
         "offline model. Copies are mirrored, turned and renamed.\n\n"
-        f"{text}\n\n{about.rpartition(',')[0]}.\n"
+        f"{text}\n\n{about}.\n"
     )
     try:
         replace_file(page, content)
