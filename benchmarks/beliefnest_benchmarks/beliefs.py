@@ -3,15 +3,12 @@
 import math
 import random
 import statistics
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Sequence
-from itertools import pairwise, product
+from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 
-from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
 from beliefnest.perception.sight import Geometry, Sight
@@ -19,8 +16,10 @@ from beliefnest.world.claims import Claim
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
-from beliefnest_benchmarks.figures import Metric
+from beliefnest_benchmarks.children import printed
+from beliefnest_benchmarks.figures import Metric, median_seconds
 from beliefnest_benchmarks.memory import peak_megabytes
+from beliefnest_benchmarks.walkers import paths_below_root
 
 __all__ = ["keep_up", "measure"]
 
@@ -66,16 +65,7 @@ def _random_geometry(shape: tuple[int, int, int], percent: int) -> Geometry:
 def _look(geometry: Geometry, eye: Point) -> float:
     """Return the median time of a complete visible set, in milliseconds."""
     geometry.visible_blocks(eye, 0.0, 0.0)
-    return _median(lambda: geometry.visible_blocks(eye, 0.0, 0.0), 31)
-
-
-def _median(action: Callable[[], object], times: int) -> float:
-    spent = []
-    for _ in range(times):
-        started = time.perf_counter()
-        action()
-        spent.append((time.perf_counter() - started) * 1e3)
-    return statistics.median(spent)
+    return median_seconds(lambda: geometry.visible_blocks(eye, 0.0, 0.0), 31) * 1e3
 
 
 class _Crowd:
@@ -101,13 +91,7 @@ class _Crowd:
 
     def nodes(self, depth: int) -> list[str]:
         """Return all paths down to a depth."""
-        names = list(self._yaws)
-        paths: list[str] = []
-        for length in range(1, depth + 1):
-            for path in product(names, repeat=length):
-                if all(a != b for a, b in pairwise(path)):
-                    paths.append("/" + "/".join(path))
-        return paths
+        return paths_below_root(list(self._yaws), depth)
 
     def tick(self, walkers: int) -> None:
         """Move some agents and the door in one tick."""
@@ -148,13 +132,13 @@ def _crowd(agents: int, depth: int) -> list[Metric]:
             crowd.nest[path].state  # noqa: B018 - what is measured
         if number >= _WARM:
             spent.append((time.perf_counter() - started) * 1e3)
-    quiet = _median(lambda: crowd.nest[paths[-1]].state, 101)
+    quiet = median_seconds(lambda: crowd.nest[paths[-1]].state, 101)
     title = f"{len(paths)} nodes, {agents} agents walking, a door moving"
     spent.sort()
     return [
         Metric(f"tick of {title}", statistics.median(spent), "ms", 10.0),
         Metric(f"95th percentile of {title}", spent[int(0.95 * len(spent))], "ms", 25.0),
-        Metric(f"node of {len(paths)} asked for with nothing changed", quiet * 1e3, "us", 50.0),
+        Metric(f"node of {len(paths)} asked for with nothing changed", quiet * 1e6, "us", 50.0),
     ]
 
 
@@ -187,20 +171,17 @@ def _late() -> list[Metric]:
     started = time.perf_counter()
     crowd.nest[path].state.agents["agent3"]
     first = time.perf_counter() - started
-    again = _median(lambda: crowd.nest[path].state.agents["agent3"], 31)
+    again = median_seconds(lambda: crowd.nest[path].state.agents["agent3"], 31)
     return [
         Metric(f"depth-3 node asked for after {_LATE} ticks", first, "s", 1.0),
-        Metric("the same node again", again, "ms", 1.0),
+        Metric("the same node again", again * 1e3, "ms", 1.0),
     ]
 
 
 def _memory() -> Metric:
     """Return the peak memory of a child process that runs `keep_up`."""
-    code = f"from {__name__} import keep_up; print(keep_up())"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise BodyError(f"a process that keeps nodes up to date failed: {done.stderr.strip()}")
-    return Metric(f"peak memory, 456 nodes over {_LATE} ticks", float(done.stdout), "MB", 300.0)
+    peak = float(printed(__name__, "keep_up()"))
+    return Metric(f"peak memory, 456 nodes over {_LATE} ticks", peak, "MB", 300.0)
 
 
 def keep_up() -> float:

@@ -1,5 +1,6 @@
 """Real browser, driven by measurements and tests."""
 
+import importlib.util
 import json
 import shutil
 import time
@@ -8,13 +9,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.errors import BodyError
+from beliefnest.errors import BodyError, InputError
 
 if TYPE_CHECKING:  # Selenium is optional, and imported when a browser is opened.
     from selenium import webdriver
     from selenium.webdriver.remote.webelement import WebElement
 
-__all__ = ["CHROMIUM", "DRIVER", "Browser", "opened_browser"]
+__all__ = ["CHROMIUM", "DRIVER", "Browser", "check_browser", "opened_browser"]
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 
@@ -104,6 +105,20 @@ class Browser:
             if message["method"] == "Network.requestWillBeSent":
                 found.append(message["params"]["request"]["url"])
         return found
+
+
+def check_browser(bench: str) -> None:
+    """Refuse a benchmark that drives a browser if there is none.
+
+    Raises:
+        InputError: Selenium or the browser is not installed.
+    """
+    if importlib.util.find_spec("selenium") is None:
+        raise InputError(
+            f"bench {bench} needs selenium to drive a browser: run `pip install selenium`"
+        )
+    if CHROMIUM is None or DRIVER is None:
+        raise InputError(f"bench {bench} needs chromium and chromedriver: install them first")
 
 
 @contextmanager

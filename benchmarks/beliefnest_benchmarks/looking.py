@@ -1,6 +1,5 @@
 """Benchmarks of the page and of pictures of a large world: sizes, times, frames while it turns."""
 
-import importlib.util
 import tempfile
 import time
 from collections.abc import Sequence
@@ -8,11 +7,10 @@ from pathlib import Path
 
 from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.page import write_page
-from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.timeline.store import Journal
-from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, opened_browser
+from beliefnest_benchmarks.browser import check_browser, opened_browser
 from beliefnest_benchmarks.figures import Metric
 from beliefnest_benchmarks.hills import Hills
 
@@ -70,12 +68,7 @@ def measure() -> Sequence[Metric]:
     Raises:
         InputError: There is no browser to measure in.
     """
-    if importlib.util.find_spec("selenium") is None:
-        raise InputError(
-            "bench looking needs selenium to drive a browser: run `pip install selenium`"
-        )
-    if CHROMIUM is None or DRIVER is None:
-        raise InputError("bench looking needs chromium and chromedriver: install them first")
+    check_browser("looking")
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         store = place / "hills.bn"

@@ -1,18 +1,14 @@
 """Benchmarks of the Sally-Anne experiment: the whole command, and its script alone."""
 
 import statistics
-import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Sequence
-from pathlib import Path
 
-from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import TICKS_PER_SECOND
 from beliefnest.worlds.by_name import Worlds
+from beliefnest_benchmarks.children import play_scenario
 from beliefnest_benchmarks.figures import Metric, median_seconds
 
 __all__ = ["measure"]
@@ -22,21 +18,12 @@ _RUNS = 5
 
 def measure() -> Sequence[Metric]:
     """Return the time of the command with all conditions, and the speed of the script."""
-    _whole()
+    play_scenario("sally-anne")
+    whole = median_seconds(lambda: play_scenario("sally-anne"), _RUNS)
     return [
-        Metric("all conditions, process start included", median_seconds(_whole, _RUNS), "s", 2.0),
+        Metric("all conditions, process start included", whole, "s", 2.0),
         Metric("Minecraft seconds per second of the script", _speed(), "x", 50.0, at_least=True),
     ]
-
-
-def _whole() -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "beliefnest", "run", "sally-anne", "--out"]
-        ended = subprocess.run(
-            [*command, str(Path(folder) / "run")], capture_output=True, text=True, check=False
-        )
-    if ended.returncode != 0:
-        raise BodyError(f"beliefnest run sally-anne ended with {ended.returncode}: {ended.stderr}")
 
 
 def _speed() -> float:

@@ -1,6 +1,5 @@
 """Benchmarks of the page: size, loading time, scrubbing rate, and delay of the live page."""
 
-import importlib.util
 import math
 import random
 import subprocess
@@ -14,12 +13,12 @@ from statistics import median
 
 from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.page import write_page
-from beliefnest.errors import BodyError, InputError
+from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.worlds.scripted.world import ScriptedWorld
-from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, Browser, opened_browser
+from beliefnest_benchmarks.browser import Browser, check_browser, opened_browser
 from beliefnest_benchmarks.figures import Metric
 
 __all__ = ["measure"]
@@ -63,12 +62,7 @@ def measure() -> Sequence[Metric]:
     Raises:
         InputError: There is no browser to measure in.
     """
-    if importlib.util.find_spec("selenium") is None:
-        raise InputError(
-            "bench viewer needs selenium to drive a browser: run `pip install selenium`"
-        )
-    if CHROMIUM is None or DRIVER is None:
-        raise InputError("bench viewer needs chromium and chromedriver: install them first")
+    check_browser("viewer")
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         with opened_browser(place / "profile") as browser:
