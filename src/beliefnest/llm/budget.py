@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from beliefnest.errors import InputError
 from beliefnest.llm.failures import LimitReachedError, UnusableAnswerError
-from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+from beliefnest.llm.messages import Answer, Message, Sampling, Usage, WrappedModel
 
 _TOKENS = 1_000_000
 
@@ -81,23 +81,16 @@ def tokens_of_free(usage: Usage) -> int:
 
 
 @dataclass(frozen=True)
-class MeteredModel:
+class MeteredModel(WrappedModel):
     """Model wrapper that counts answers against a budget and stops when it is used up.
 
     Attributes:
-        model: The model to ask.
         budget: Limits of the run and its usage so far.
         is_free: True if the model is known to cost nothing.
     """
 
-    model: Model
     budget: RunSpending
     is_free: bool = False
-
-    @property
-    def name(self) -> str:
-        """Name of the wrapped model."""
-        return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Ask the model if the budget allows it.

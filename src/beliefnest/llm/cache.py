@@ -10,7 +10,7 @@ import msgspec
 
 from beliefnest.errors import ModelError
 from beliefnest.files import read_regular
-from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.llm.messages import Answer, Message, Sampling, WrappedModel
 from beliefnest.llm.stored_exchange import (
     Exchange,
     decode_exchange,
@@ -26,23 +26,16 @@ neither use nor store answers."""
 
 
 @dataclass(frozen=True)
-class CachedModel:
+class CachedModel(WrappedModel):
     """Model wrapper with a cache folder, one file per request.
 
     Attributes:
-        model: Model for requests that are not in the cache.
         folder: Folder of the cache; created with the first answer.
         mode: `read`, `only` or `write`.
     """
 
-    model: Model
     folder: Path
     mode: CacheMode
-
-    @property
-    def name(self) -> str:
-        """Name of the wrapped model."""
-        return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Return the cached answer or ask the model.

@@ -10,7 +10,7 @@ import msgspec
 from beliefnest.errors import BeliefNestError
 from beliefnest.files import decode_json
 from beliefnest.llm.failures import UnusableAnswerError, excerpt
-from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.llm.messages import Answer, Message, Model, Sampling, WrappedModel
 
 if TYPE_CHECKING:  # Claims check blocks and items with NumPy; most who import models read none.
     from beliefnest.world.claims import Claim
@@ -92,16 +92,11 @@ def claims_from_model(model: Model, sampling: Sampling | None = None) -> ClaimsF
     return ClaimsFromModel(model, sampling or Sampling())
 
 
-@dataclass(frozen=True, slots=True)
-class _Strict:
+@dataclass(frozen=True)
+class _Strict(WrappedModel):
     """Model wrapper that raises if an answer is not a list of claims about this world."""
 
-    model: Model
     nameable: "Nameable"
-
-    @property
-    def name(self) -> str:
-        return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         answer = self.model.answer(messages, sampling)

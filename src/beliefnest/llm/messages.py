@@ -122,3 +122,19 @@ class Model(Protocol):
         Raises:
             ModelError: The model is not available or gave no answer, or the run reached a limit.
         """
+
+
+@dataclass(frozen=True)
+class WrappedModel:
+    """Part of a model that asks another one, under the same name.
+
+    Attributes:
+        model: The model to ask.
+    """
+
+    model: Model
+
+    @property
+    def name(self) -> str:
+        """Name of the wrapped model."""
+        return self.model.name

@@ -9,7 +9,7 @@ from urllib.parse import parse_qsl, urlencode
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
-from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.llm.messages import Answer, Message, Model, Sampling, WrappedModel
 from beliefnest.llm.remote import AnswerLimits
 from beliefnest.skills.manifests import SkillDetail
 
@@ -121,21 +121,14 @@ def query_of(system: Path | None, values: Mapping[str, Any]) -> str:
 
 
 @dataclass(frozen=True)
-class WithSystem:
+class WithSystem(WrappedModel):
     """Model wrapper that sends another system message.
 
     Attributes:
-        model: The model to ask.
         text: The system message.
     """
 
-    model: Model
     text: str
-
-    @property
-    def name(self) -> str:
-        """Name of the wrapped model."""
-        return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Ask the model with the other system message.

@@ -10,7 +10,7 @@ import msgspec
 from beliefnest.errors import InputError, ModelError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.failures import excerpt
-from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.llm.messages import Answer, Message, Sampling, WrappedModel
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange, encode_exchange, exchange_of
 
 _Question = tuple[Message, ...]
@@ -71,16 +71,10 @@ class ReplayModel:
 
 
 @dataclass(frozen=True)
-class FileRecordingModel:
+class FileRecordingModel(WrappedModel):
     """Model wrapper that appends exchanges to a file, one JSON object per line."""
 
-    model: Model
     file: Path
-
-    @property
-    def name(self) -> str:
-        """Name of the wrapped model."""
-        return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Ask the model and record the exchange.

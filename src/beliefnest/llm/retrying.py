@@ -9,7 +9,7 @@ from datetime import datetime, timedelta
 from beliefnest.errors import ModelError
 from beliefnest.llm.clock import Clock
 from beliefnest.llm.failures import TransientModelError, UnavailableModelError
-from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.llm.messages import Answer, Message, Sampling, WrappedModel
 
 TellWait = Callable[[str], None]
 """Function that tells the user a line about a long wait."""
@@ -52,25 +52,18 @@ class RetryPolicy:
 
 
 @dataclass(frozen=True)
-class RetryingModel:
+class RetryingModel(WrappedModel):
     """Model that repeats requests after rate limits, server faults and lost connections.
 
     Attributes:
-        model: The model to ask.
         policy: Number and timing of the requests.
         clock: Clock that waits.
         tell: Function that receives a line about each wait that the provider asked for.
     """
 
-    model: Model
     policy: RetryPolicy
     clock: Clock
     tell: TellWait = tell_on_stderr
-
-    @property
-    def name(self) -> str:
-        """Name of the wrapped model."""
-        return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Ask until there is an answer or the policy gives up.
