@@ -1,9 +1,11 @@
 """Workers play cells of any kind, and know none."""
 
-from contextlib import ExitStack
-from dataclasses import dataclass
+import os
+from contextlib import ExitStack, nullcontext
+from dataclasses import dataclass, replace
 
 import pytest
+from tests.children import children
 
 from beliefnest.errors import BeliefNestError, ModelError
 from beliefnest.llm.budget import RunLimits
@@ -13,6 +15,7 @@ from beliefnest.plan.jobs import run_cells
 from beliefnest.plan.spending import spent_in
 from beliefnest.plan.terms import PlayStage, Terms
 from beliefnest.plan.worker import Worker
+from beliefnest.studies.suite_playing import KeptProcesses
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +42,8 @@ class NumberCell:
     def play(self, stage: PlayStage) -> dict[str, object]:
         if self.error is not None:
             raise self.error
-        return {"error": None, "square": self.key.number**2, "limit": stage.terms.limits.tokens}
+        square, limit = self.key.number**2, stage.terms.limits.tokens
+        return {"error": None, "square": square, "limit": limit, "process": os.getpid()}
 
 
 class Kept:
@@ -66,6 +70,10 @@ def nothing_ahead(world, seed):
     raise AssertionError("a process was started")
 
 
+def no_world(world, seed):
+    return nullcontext()
+
+
 def test_cells_of_another_kind_are_played_and_go_on(tmp_path):
     folder = Kept(tmp_path / "spent.jsonl")
     told = []
@@ -83,6 +91,21 @@ def test_cells_of_another_kind_are_played_and_go_on(tmp_path):
         ({"number": number}, 7) for number in range(3)
     ]
     assert spent_in(folder.ledger).requests == 0
+
+
+def test_the_processes_of_one_part_of_a_plan_play_the_next_one(tmp_path):
+    folder = Kept(tmp_path / "spent.jsonl")
+    cells = [replace(NumberCell(NumberKey(number)), is_quick=False) for number in range(4)]
+    with ExitStack() as stack:
+        kept = KeptProcesses(stack)
+        options = {"on_progress": print, "ahead": no_world, "hire": kept.hire}
+        for part in (cells[:2], cells):
+            run_cells(part, folder, terms_in(tmp_path), 2, "loky", **options)
+        processes = {folder.cells[each.key.name]["process"] for each in cells}
+        assert os.getpid() not in processes
+        assert len(processes) <= 2
+        assert processes <= children()
+    assert processes.isdisjoint(children())
 
 
 def test_a_worker_raises_the_errors_that_are_no_results(tmp_path):

@@ -419,10 +419,10 @@ def test_a_line_that_was_cut_off_spoils_no_other(tmp_path):
 
 
 def test_a_few_quick_cells_are_played_by_one_process(whole, tmp_path, monkeypatch):
-    def no_processes(*arguments):
+    def no_processes(max_workers):
         raise AssertionError("a process was started")
 
-    monkeypatch.setattr("beliefnest.plan.jobs.processes", no_processes)
+    monkeypatch.setattr("joblib.externals.loky.ProcessPoolExecutor", no_processes)
     bn.Study.load(whole[1]).run(tmp_path / "one", jobs=2)
     assert cells_of(tmp_path / "one") == cells_of(whole[0])
     monkeypatch.setattr("beliefnest.plan.jobs._FEW", {"embedded": CELLS - 1})

@@ -13,7 +13,7 @@ from beliefnest.errors import BodyError, InputError, MissingExtraError, UnknownN
 from beliefnest.llm.failures import UnavailableModelError
 from beliefnest.llm.messages import Usage
 from beliefnest.plan.cells import Keyed
-from beliefnest.plan.processes import Supply, processes
+from beliefnest.plan.processes import Crew, Supply, processes
 from beliefnest.plan.spending import spent_in
 from beliefnest.plan.terms import Terms
 from beliefnest.plan.worker import Ahead, CellResult, Worker, play_in_process
@@ -72,6 +72,8 @@ class StudyProgress:
 
 OnStudyProgress = Callable[[StudyProgress], None]
 MakeWorker = Callable[[ExitStack], Worker]
+Hire = Callable[[int, str, Ahead], contextlib.AbstractContextManager[Crew]]
+"""Function that starts worker processes, as `processes` does."""
 
 
 def run_cells(
@@ -83,6 +85,7 @@ def run_cells(
     on_progress: OnStudyProgress,
     ahead: Ahead,
     worker: MakeWorker = Worker,
+    hire: Hire = processes,
 ) -> None:
     """Play the cells without a result, and write each result as soon as it is known.
 
@@ -97,6 +100,7 @@ def run_cells(
         on_progress: Function that receives the progress.
         ahead: Function that launches the world of a process before the process plays.
         worker: Function that makes the worker of this process if no other one plays.
+        hire: Function that starts the other processes of this machine.
 
     Raises:
         InputError: `jobs` is not a whole number, at least 1.
@@ -109,7 +113,8 @@ def run_cells(
         raise InputError(f"jobs is {quoted(jobs)}; it must be a whole number, at least 1")
     if backend not in BACKENDS:
         raise UnknownNameError(f"there is no backend {backend!r}; there are {', '.join(BACKENDS)}")
-    left = [cell for cell in cells if _is_open(folder, cell)]
+    before = ((cell, folder.cell(cell.key.name)) for cell in cells)
+    left = [cell for cell, record in before if record is None or record["error"] is not None]
 
     def progressed(done: int, failed: int) -> StudyProgress:
         progress = StudyProgress(len(cells), done, failed, spent_in(folder.ledger))
@@ -118,7 +123,7 @@ def run_cells(
 
     progress = progressed(len(cells) - len(left), 0)
     keys = {cell.key.name: cell.key for cell in left}
-    with contextlib.closing(_results(left, terms, jobs, backend, ahead, worker)) as results:
+    with contextlib.closing(_results(left, terms, jobs, backend, ahead, worker, hire)) as results:
         warned: set[str] = set()
         for result in results:
             for each in result.warnings:
@@ -127,9 +132,8 @@ def run_cells(
                 warned.add(each.subject)
             key = keys[result.name]
             folder.note_seconds(result.name, result.seconds)
-            folder.write_cell(
-                result.name, {"key": key.content_json(), "seed": key.seed, **result.content}
-            )
+            record = {"key": key.content_json(), "seed": key.seed, **result.content}
+            folder.write_cell(result.name, record)
             if result.unavailable:
                 raise UnavailableModelError(
                     f"{result.unavailable}; {counted(progress.left, 'cell')} left to play: run it "
@@ -139,11 +143,6 @@ def run_cells(
             progress = progressed(progress.done + has_result, progress.failed + (not has_result))
 
 
-def _is_open(folder: CellFolder, cell: Keyed) -> bool:
-    record = folder.cell(cell.key.name)
-    return record is None or record["error"] is not None
-
-
 def _results(
     cells: Sequence[Keyed],
     terms: Terms,
@@ -151,10 +150,13 @@ def _results(
     backend: str,
     ahead: Ahead,
     make_worker: MakeWorker,
+    hire: Hire,
 ) -> _Results:
     if not cells:
         return
-    if backend == "loky" and (jobs == 1 or _are_few(cells)):
+    # One process plays few quick cells sooner than several, which have to start.
+    few = _FEW.get(_world_of(cells), 1) if all(cell.is_quick for cell in cells) else 1
+    if backend == "loky" and (jobs == 1 or len(cells) <= few):
         with ExitStack() as stack:
             worker = make_worker(stack)
             for cell in cells:
@@ -162,18 +164,14 @@ def _results(
         return
     with _engine(backend, jobs):
         if backend == "loky":
-            yield from _in_processes(cells, terms, jobs, ahead)
+            yield from _in_processes(cells, terms, jobs, ahead, hire)
         else:
             yield from _on_cluster(cells, terms, jobs, backend)
 
 
-def _are_few(cells: Sequence[Keyed]) -> bool:
-    """Return True if one process plays cells sooner than several, which have to start."""
-    most = _FEW.get(_world_of(cells), 0) if all(cell.is_quick for cell in cells) else 0
-    return len(cells) <= max(1, most)
-
-
-def _in_processes(cells: Sequence[Keyed], terms: Terms, jobs: int, ahead: Ahead) -> _Results:
+def _in_processes(
+    cells: Sequence[Keyed], terms: Terms, jobs: int, ahead: Ahead, hire: Hire
+) -> _Results:
     """Play cells in processes of this machine.
 
     This process plays quick cells, too: so cells are played while the others start, and one process
@@ -186,7 +184,8 @@ def _in_processes(cells: Sequence[Keyed], terms: Terms, jobs: int, ahead: Ahead)
         # Before the pool, whose library takes a moment to import.
         launch = stack.enter_context(ahead(world, 0)) if plays else None
         supply = Supply(cells, terms)
-        stack.enter_context(processes(supply, min(jobs, len(cells)) - plays, world, ahead))
+        crew = stack.enter_context(hire(min(jobs, len(cells)) - plays, world, ahead))
+        stack.enter_context(supply.played_by(crew))
         if plays:
             worker = Worker(stack, launch)
             while (cell := supply.take()) is not None:

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager
 from queue import SimpleQueue
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beliefnest.plan.ending import end_with
 
@@ -38,7 +38,7 @@ class Supply:
         self._left = deque(cells)
         self._terms = terms
         self._lock = threading.Lock()
-        self._ended: SimpleQueue[Future[CellResult]] = SimpleQueue()
+        self._ended: SimpleQueue[Future[Any]] = SimpleQueue()
         self._sent = 0
         self._received = 0
 
@@ -57,20 +57,25 @@ class Supply:
             self._received += 1
             yield self._ended.get().result()
 
-    def feed(self, pool: "Executor", ready: "Future[None]") -> None:
-        """Send the first cells to a process that is ready for them."""
+    @contextmanager
+    def played_by(self, crew: "Crew") -> Iterator[None]:
+        """Send cells to processes that are ready for them, until the end."""
+        try:
+            for each in crew.ready:
+                each.add_done_callback(lambda ended: self._feed(crew.pool, ended))
+            yield
+        finally:
+            with self._lock:
+                self._left.clear()
+
+    def _feed(self, pool: "Executor", ready: "Future[None]") -> None:
         if ready.cancelled():
             return
-        if (error := ready.exception()) is not None:
-            self._ended.put(_failed(error))
+        if ready.exception() is not None:
+            self._ended.put(ready)
             return
         for _ in range(_AHEAD):
             self._send(pool)
-
-    def close(self) -> None:
-        """Send no more cells."""
-        with self._lock:
-            self._left.clear()
 
     @property
     def _is_open(self) -> bool:
@@ -88,7 +93,9 @@ class Supply:
         try:
             future = pool.submit(play_in_process, cell, self._terms)
         except Exception as error:  # noqa: BLE001 - raised again where results are read
-            self._ended.put(_failed(error))
+            failed: Future[Any] = Future()
+            failed.set_exception(error)
+            self._ended.put(failed)
             return
         future.add_done_callback(lambda ended: self._receive(pool, ended))
 
@@ -100,12 +107,23 @@ class Supply:
             self._send(pool)
 
 
+class Crew(NamedTuple):
+    """Worker processes, which may play the cells of several supplies, one after the other.
+
+    Attributes:
+        pool: The processes.
+        ready: Moments from which each of them plays.
+    """
+
+    pool: "Executor"
+    ready: "Sequence[Future[None]]"
+
+
 @contextmanager
-def processes(supply: Supply, count: int, world: str, ahead: "Ahead") -> Iterator[None]:
-    """Start worker processes, which play cells of a supply; kill them at the end.
+def processes(count: int, world: str, ahead: "Ahead") -> Iterator[Crew]:
+    """Start worker processes; kill them at the end.
 
     Args:
-        supply: The cells.
         count: Number of processes.
         world: Name of the world that each of them needs; empty: it depends on the cell.
         ahead: Function that launches that world.
@@ -114,12 +132,8 @@ def processes(supply: Supply, count: int, world: str, ahead: "Ahead") -> Iterato
 
     pool = ProcessPoolExecutor(max_workers=count)
     try:
-        for _ in range(count):
-            ready = pool.submit(_prepare, os.getpid(), world, ahead)
-            ready.add_done_callback(lambda ended: supply.feed(pool, ended))
-        yield
+        yield Crew(pool, [pool.submit(_prepare, os.getpid(), world, ahead) for _ in range(count)])
     finally:
-        supply.close()
         # A worker may be in the middle of a long cell, and its worlds are open.
         pool.shutdown(wait=True, kill_workers=True)
 
@@ -133,9 +147,3 @@ def _prepare(owner: int, world: str, ahead: "Ahead") -> None:
     from beliefnest.plan.worker import keep_worker
 
     keep_worker(stack, launch)
-
-
-def _failed(error: BaseException) -> "Future[CellResult]":
-    future: Future[CellResult] = Future()
-    future.set_exception(error)
-    return future

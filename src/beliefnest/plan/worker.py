@@ -77,13 +77,11 @@ class Worker:
         with warnings.catch_warnings(record=True) as seen:
             warnings.simplefilter("always", ScenarioWarning)
             content, unavailable = self.content(cell, terms)
-        own = [each for each in seen if isinstance(each.message, ScenarioWarning)]
+        ours = tuple(each.message for each in seen if isinstance(each.message, ScenarioWarning))
         for each in seen:
-            if each not in own:
+            if each.message not in ours:
                 warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
-        seconds = time.perf_counter() - started
-        ours = tuple(each.message for each in own if isinstance(each.message, ScenarioWarning))
-        return CellResult(cell.key.name, content, seconds, unavailable, ours)
+        return CellResult(cell.key.name, content, time.perf_counter() - started, unavailable, ours)
 
     def content(self, cell: Keyed, terms: Terms) -> tuple[dict[str, Any], str]:
         """Play a cell; return its content, and why no further cell can be played.

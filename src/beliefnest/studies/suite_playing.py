@@ -1,7 +1,7 @@
 """Playing of the cells of a suite in their folder, which is like that of a study."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,8 @@ from beliefnest.locking import holding
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.plan.cells import Keyed
 from beliefnest.plan.jobs import OnStudyProgress, run_cells
+from beliefnest.plan.processes import Crew, processes
+from beliefnest.plan.worker import Ahead
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import CellKind
@@ -79,10 +81,32 @@ def cells_player(
         plan = {**about, "cells": planned, "invalid": [], "versions": own_versions()}
         _check_same(place, plan)
         place.write_plan(plan)
-        run_cells(cells, place, shared, jobs, "loky", on_progress, ahead)
+        run_cells(cells, place, shared, jobs, "loky", on_progress, ahead, hire=kept.hire)
 
-    with holding(place.path):
+    with holding(place.path), ExitStack() as stack:
+        kept = KeptProcesses(stack)
         yield play
+
+
+class KeptProcesses:
+    """Worker processes that are kept from one part of a plan to the next.
+
+    They take longer to start than to play some cells.
+
+    Args:
+        stack: Stack that ends them.
+    """
+
+    def __init__(self, stack: ExitStack) -> None:
+        self._hired = stack.enter_context(ExitStack())
+        self._crew: Crew | None = None
+
+    def hire(self, count: int, world: str, ahead: Ahead) -> AbstractContextManager[Crew]:
+        """Return at least `count` processes; see `plan.processes.processes`."""
+        if self._crew is None or len(self._crew.ready) < count:
+            self._hired.close()
+            self._crew = self._hired.enter_context(processes(count, world, ahead))
+        return nullcontext(self._crew)
 
 
 def _check_same(place: StudyFolder, plan: Mapping[str, Any]) -> None:
