@@ -120,6 +120,7 @@ def _kernels() -> str:
     import numba
 
     from beliefnest.belief import kernel
+    from beliefnest.geometry.line_kernel import leads_any
     from beliefnest.minds import relaxing
     from beliefnest.perception import eye_loops
     from beliefnest.perception.compiling import is_compiled, kernel_folder
@@ -127,7 +128,7 @@ def _kernels() -> str:
 
     kernels = (
         *(kernel.fold, eye_loops.seen_blocks, relaxing.raise_values),
-        *(footpath_kernels.find, footpath_kernels.next_target),
+        *(footpath_kernels.find, footpath_kernels.next_target, leads_any),
     )
     folder = kernel_folder(kernel.fold)
     if getattr(numba.config, "DISABLE_JIT", False):
@@ -152,7 +153,7 @@ def _use_kernels() -> None:
     from beliefnest.perception.sight import Sight
     from beliefnest.world.registry import Registry
     from beliefnest.world.values import Box
-    from beliefnest.worlds.scripted.footpaths import Ground, Near
+    from beliefnest.worlds.scripted.footpaths import Ground, InReach
     from beliefnest.worlds.scripted.world import ScriptedWorld
 
     sys.stderr.write(
@@ -175,7 +176,7 @@ def _use_kernels() -> None:
     for block in ("air", "stone"):
         blocks = np.full((3, 3, 3), registry.state_id(block), dtype=np.int32)
         Sight(registry).geometry(blocks, (0, 0, 0)).visible_blocks((1.5, 1.5, 1.5), 0.0, 0.0)
-    Ground(registry, Box((0, 0, 0), (2, 2, 2)), blocks).may_lead((0, 3, 0), Near((0, 0, 0), 0))
+    Ground(registry, Box((0, 0, 0), (2, 2, 2)), blocks).may_lead((0, 3, 0), InReach((0, 2, 0), 4))
 
 
 def _world() -> str:

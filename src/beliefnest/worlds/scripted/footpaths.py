@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -99,11 +99,13 @@ class Ground:
         self._blocks = blocks if isinstance(blocks, Terrain) else Terrain.of_one(blocks)
         self._footing = Footing(registry, box, self._blocks, doors)
         self.has_doors = self._footing.has_doors
-        self._lines: dict[tuple[Position, Position], bool] = {}
+        states = self._blocks  # the cache does not hold its ground, which would live on
+        self._has_line = lru_cache(_MOST_WAYS)(
+            lambda cell, block: can_use(box, states, eye_in(cell), block)
+        )
         self._ways: dict[tuple[Position, WalkGoal], tuple[Position, ...] | None] = {}
         self._areas: list[_Area] = []
         self._met: dict[tuple[int, WalkGoal], bool] = {}
-        self._leads: dict[tuple[Position, WalkGoal], bool] = {}
 
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
@@ -184,15 +186,6 @@ class Ground:
         An area is the set of all cells that can be reached from one cell. A path exists only if
         some cell in an area with `start` meets the goal.
         """
-        asked = (start, goal)
-        leads = self._leads.get(asked)
-        if leads is None:
-            if len(self._leads) >= _MOST_WAYS:
-                self._leads.clear()
-            leads = self._leads[asked] = self._leads_there(start, goal)
-        return leads
-
-    def _leads_there(self, start: Position, goal: WalkGoal) -> bool:
         if self._footing.window(start) is None:
             return self.meets(goal, start)
         number = self._first_area(start)
@@ -237,15 +230,6 @@ class Ground:
     def can_touch(self, eye: Point, block: Position) -> bool:
         """Return True if nothing solid lies between an eye and some point of a block."""
         return can_touch(self._box, self._blocks, eye, block)
-
-    def _has_line(self, cell: Position, block: Position) -> bool:
-        asked = (cell, block)
-        has_line = self._lines.get(asked)
-        if has_line is None:
-            if len(self._lines) >= _MOST_WAYS:
-                self._lines.clear()
-            has_line = self._lines[asked] = can_use(self._box, self._blocks, eye_in(cell), block)
-        return has_line
 
     def _first_area(self, start: Position) -> int | None:
         """Return the number of the first known area that contains a cell; None: there is none."""
