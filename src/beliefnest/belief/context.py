@@ -102,18 +102,15 @@ class BeliefContext:
         The left half of a double chest is none: its right half is the container.
         """
         holds = np.zeros(_NUMBERS + 1, dtype=np.bool_)
-        for name in self.registry.containers:
-            for state in self.registry.state_ids(name):
-                holds[state] = holds_items(self.registry, state)
+        for state in self.registry.states_of(self.registry.containers):
+            holds[state] = holds_items(self.registry, state)
         return holds
 
     @cached_property
     def shows(self) -> npt.NDArray[np.bool_]:
         """Bool by block number, as `holds`: a container, or the left half that belongs to one."""
         shows = self.holds.copy()
-        for name in self.registry.containers:
-            ids = self.registry.state_ids(name)
-            shows[ids.start : ids.stop] = True
+        shows[self.registry.states_of(self.registry.containers)] = True
         return shows
 
     @cached_property

@@ -112,9 +112,7 @@ def initial_forest(
 def _numbers_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.bool_]:
     """Return by number of a block whether its block has one of some names."""
     is_named = np.zeros(context.holds.size, dtype=np.bool_)
-    for name in names:
-        ids = context.registry.state_ids(name)
-        is_named[ids.start : ids.stop] = True
+    is_named[context.registry.states_of(names)] = True
     for number, sign in context.signs.items():
         is_named[number] = is_named[sign.state]
     return is_named

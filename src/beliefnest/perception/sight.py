@@ -85,9 +85,7 @@ class Sight:
     @functools.cached_property
     def _transparent(self) -> BoolArray:
         transparent = self.registry.default_transparent.copy()
-        for name in self.transparent_blocks:
-            ids = self.registry.state_ids(name)
-            transparent[ids.start : ids.stop] = True
+        transparent[self.registry.states_of(self.transparent_blocks)] = True
         return transparent
 
     @functools.cached_property

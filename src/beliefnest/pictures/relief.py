@@ -75,9 +75,7 @@ def read_relief(
     first, last = x0 - box.low[0], x1 - box.low[0] + 1
     top, near, far = height - box.low[1] + 1, z0 - box.low[2], z1 - box.low[2] + 1
     is_air = np.zeros(registry.states + 1, dtype=np.bool_)
-    for name in _AIR:
-        ids = registry.state_ids(name)
-        is_air[ids.start : ids.stop] = True
+    is_air[registry.states_of(_AIR)] = True
     # -1, unknown, indexes the last place.
     is_air[-1] = True
     # A part of the columns at a time: all blocks of a large box would need much memory.

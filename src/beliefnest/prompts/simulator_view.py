@@ -66,8 +66,7 @@ def blocks_named(state: State, names: Iterable[str]) -> Iterator[tuple[Position,
         InputError: They are too many for a text.
         UnknownNameError: No block has such a name.
     """
-    registry = Registry.load()
-    return _listed(state, [number for name in names for number in registry.state_ids(name)])
+    return _listed(state, Registry.load().states_of(names))
 
 
 def _listed(state: State, wanted: Sequence[int]) -> Iterator[tuple[Position, str]]:

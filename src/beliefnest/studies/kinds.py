@@ -14,25 +14,13 @@ from beliefnest.studies.items.cells import ITEM_KIND
 from beliefnest.studies.rows import PROBES
 from beliefnest.studies.table import CellKind
 
-SCENARIO_KIND = CellKind(
-    name="scenarios",
-    plan=ScenariosPlan,
-    cell=PlayedScenario,
-    table=PROBES,
-    subject="scenario",
-)
-RUN_KIND = CellKind(
-    name="runs",
-    plan=RunPlan,
-    cell=PlayedCondition,
-    table=PROBES,
-    subject="scenario",
-)
+SCENARIO_KIND = CellKind("scenarios", ScenariosPlan, PlayedScenario, PROBES, subject="scenario")
+RUN_KIND = CellKind("runs", RunPlan, PlayedCondition, PROBES, subject="scenario")
 EPISODE_KIND = CellKind(
-    name="episodes",
-    plan=EpisodesPlan,
-    cell=PlayedEpisode,
-    table=EPISODES,
+    "episodes",
+    EpisodesPlan,
+    PlayedEpisode,
+    EPISODES,
     subject="task",
     players="players",
     player=("policy", "policies"),

@@ -130,7 +130,9 @@ def put_block(
             f"{name} cannot be put in the scripted world: it is no block, or its state depends on "
             'the pose of the agent; open the nest with world="embedded" for that'
         )
-    if not free_to_put(registry, state_at, place):
+    around = (state_at(_beside(place, side)) for side in _SIDES)
+    is_held = any(registry.boxes(each) for each in around)
+    if state_at(place) not in registry.airs or not is_held:
         raise WorldError(
             f"{name} cannot be put at {place}: {registry.text(state_at(place))} is there, or no "
             "solid block is beside it"
@@ -139,12 +141,6 @@ def put_block(
     if any(_overlaps(box, place, feet) for box in registry.boxes(state) for feet in bodies):
         raise WorldError(f"{name} cannot be put at {place}: somebody stands there")
     return state
-
-
-def free_to_put(registry: Registry, state_at: StateAt, place: Position) -> bool:
-    """Return True if a place is air and has a solid block beside it to place something against."""
-    around = (state_at(_beside(place, side)) for side in _SIDES)
-    return state_at(place) in registry.airs and any(registry.boxes(each) for each in around)
 
 
 def check_holds_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:

@@ -229,6 +229,14 @@ class Registry:
         count = math.prod(len(values) for _, values in block.properties)
         return range(block.first_state, block.first_state + count)
 
+    def states_of(self, names: Iterable[str]) -> list[int]:
+        """Return all state ids of some blocks.
+
+        Raises:
+            UnknownNameError: There is no block of a name.
+        """
+        return [state for name in names for state in self.state_ids(name)]
+
     @property
     def containers(self) -> frozenset[str]:
         """Names of the blocks whose contents are part of the world state."""

@@ -26,8 +26,7 @@ def is_sign(name: str) -> bool:
 @functools.cache
 def sign_states(registry: Registry) -> tuple[int, ...]:
     """Return the block states of all kinds of signs."""
-    names = (name for name in registry.block_names if is_sign(name))
-    return tuple(state for name in names for state in registry.state_ids(name))
+    return tuple(registry.states_of(filter(is_sign, registry.block_names)))
 
 
 def sign_fault(text: str) -> str | None:

@@ -129,10 +129,9 @@ class _Blocks:
         """Return known blocks of some names."""
         registry, terrain = self._context.registry, self.terrain
         x, y, z = self._context.box.low
-        wanted = [state for name in names for state in registry.state_ids(name)]
         return {
             (x + i, y + j, z + k): registry.text(terrain[i, j, k])
-            for i, j, k in terrain.find(wanted).tolist()
+            for i, j, k in terrain.find(registry.states_of(names)).tolist()
         }
 
     def current(self, position: Position) -> bool:

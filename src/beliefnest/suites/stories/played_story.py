@@ -1,6 +1,6 @@
 """Playing of stories in a world, with a nest that tracks the beliefs."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
@@ -251,34 +251,22 @@ def check_question(story: Story, question: Question) -> None:
     Raises:
         InputError: The question names an agent or thing that is not in the story.
     """
-    for agent in question.believers:
-        if agent not in story.agents:
-            there = ", ".join(story.agents)
-            raise InputError(
-                f"{quoted(question.text)}: {agent} is not in the story; there are {there}"
-            )
-    if question.door is not None:
-        if question.door not in story.doors:
-            there = ", ".join(story.doors) or "none"
-            raise InputError(
-                f"{quoted(question.text)}: nobody opens or shuts a door of the {question.door}; "
-                f"there are doors of: {there}"
-            )
-        return
-    if question.sign is not None:
-        if question.sign not in story.signs:
-            there = ", ".join(story.signs) or "none"
-            raise InputError(
-                f"{quoted(question.text)}: nobody writes on a sign of the {question.sign}; there "
-                f"are signs of: {there}"
-            )
-        return
-    if question.thing not in story.things:
-        there = ", ".join(story.things)
-        raise InputError(
-            f"{quoted(question.text)}: no line says where the {question.thing} is; there are "
-            f"{there}"
-        )
+    door, sign, thing = question.door, question.sign, question.thing
+    checks: list[tuple[str, Collection[str], str]] = [
+        (each, story.agents, f"{each} is not in the story; there are")
+        for each in question.believers
+    ]
+    if door is not None:
+        fault = f"nobody opens or shuts a door of the {door}; there are doors of:"
+        checks.append((door, story.doors, fault))
+    elif sign is not None:
+        fault = f"nobody writes on a sign of the {sign}; there are signs of:"
+        checks.append((sign, story.signs, fault))
+    else:
+        checks.append((thing, story.things, f"no line says where the {thing} is; there are"))
+    for name, names, fault in checks:
+        if name not in names:
+            raise InputError(f"{quoted(question.text)}: {fault} {', '.join(names) or 'none'}")
 
 
 def _grace(story: Story, plan: FloorPlan, world: str) -> int:

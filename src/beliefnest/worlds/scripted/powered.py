@@ -138,9 +138,8 @@ def _places(box: Box, blocks: Terrain, wanted: Collection[int]) -> Iterator[Posi
 @functools.cache
 def _switch_states() -> frozenset[int]:
     registry = Registry.load()
-    switches = (name for name in registry.block_names if is_switch(name))
-    states = (state for name in switches for state in registry.state_ids(name))
-    return frozenset({*states, *Circuits.load().plates})
+    switches = registry.states_of(filter(is_switch, registry.block_names))
+    return frozenset({*switches, *Circuits.load().plates})
 
 
 def _overlaps(middle: float, half: float, low: int, inset: float) -> bool:
