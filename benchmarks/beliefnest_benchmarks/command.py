@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from rich import box
@@ -40,7 +41,10 @@ def run_benches(names: Sequence[str], *, as_json: bool) -> int:
             on_progress(name, number, len(chosen))
             figures[name] = measure(name)
     if as_json:
-        content = {name: [_json(figure) for figure in found] for name, found in figures.items()}
+        content = {
+            name: [{**asdict(each), "ok": each.ok} for each in found]
+            for name, found in figures.items()
+        }
         sys.stdout.write(json.dumps(content, indent=2) + "\n")
     else:
         stdout().print(folded(_table(figures)))
@@ -91,17 +95,6 @@ def draw_curves(names: Sequence[str], folder: Path, *, as_json: bool) -> int:
         plain = {name: [point._asdict() for point in points] for name, points in found.items()}
         sys.stdout.write(json.dumps(plain, indent=2) + "\n")
     return 0
-
-
-def _json(figure: Metric) -> dict[str, object]:
-    return {
-        "name": figure.name,
-        "value": figure.value,
-        "unit": figure.unit,
-        "target": figure.target,
-        "at_least": figure.at_least,
-        "ok": figure.ok,
-    }
 
 
 def _table(figures: dict[str, Sequence[Metric]]) -> Table:

@@ -10,7 +10,7 @@ from anyio.to_thread import run_sync
 from inspect_ai import Task
 from inspect_ai.dataset import Sample
 from inspect_ai.model import ChatMessageUser
-from inspect_ai.scorer import Score, Scorer, Target, scorer
+from inspect_ai.scorer import Score, Scorer, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from beliefnest.errors import InputError
@@ -23,12 +23,7 @@ from beliefnest.inspect.metrics import (
     rated,
     stderr_of_epochs,
 )
-from beliefnest.inspect.task_parts import (
-    finish_of,
-    several_files,
-    task_of,
-    without_answer,
-)
+from beliefnest.inspect.task_parts import answer_scorer, several_files, task_of
 from beliefnest.llm.messages import Finish
 from beliefnest.llm.reading_numbers import NumbersReading
 from beliefnest.nest.face.nest import Nest
@@ -214,11 +209,7 @@ def like_inference() -> Scorer:
     """Score 1 less the mean absolute error of the ratings against exact inference."""
     courses = _Courses()
 
-    async def score(state: TaskState, target: Target) -> Score:
-        lost = without_answer(state)
-        if lost is not None:
-            return lost
-        answer, finish = state.output.completion, finish_of(state.output)
+    async def judge(state: TaskState, answer: str, finish: Finish) -> Score:
         reading, match = await run_sync(courses.compared, state.metadata, answer, finish)
         lines = [f"{about}: {_pairs_text(pairs)}" for about, pairs in match.pairs.items()]
         outcome = "rated" if reading.outcome == "read" else reading.row_outcome
@@ -235,7 +226,7 @@ def like_inference() -> Scorer:
             },
         )
 
-    return score
+    return answer_scorer(judge)
 
 
 def _pairs_text(pairs: Any) -> str:

@@ -5,18 +5,13 @@ from pathlib import Path
 from anyio.to_thread import run_sync
 from inspect_ai import Task
 from inspect_ai.dataset import Sample
-from inspect_ai.scorer import Score, Scorer, Target, scorer
+from inspect_ai.scorer import Score, Scorer, scorer
 from inspect_ai.solver import TaskState
 
 from beliefnest.errors import InputError
 from beliefnest.inspect.metrics import CLUSTER, metrics_by
-from beliefnest.inspect.task_parts import (
-    finish_of,
-    score_of,
-    several_files,
-    task_of,
-    without_answer,
-)
+from beliefnest.inspect.task_parts import answer_scorer, score_of, several_files, task_of
+from beliefnest.llm.messages import Finish
 from beliefnest.llm.reading_answers import read_answer
 from beliefnest.plan.cells import variation_id
 from beliefnest.suites import story_reader
@@ -100,14 +95,9 @@ def _sample(
 def story_answer() -> Scorer:
     """Score an answer by the expected container; explain the belief of the nest."""
 
-    async def score(state: TaskState, target: Target) -> Score:
-        lost = without_answer(state)
-        if lost is not None:
-            return lost
-        reading = read_answer(
-            state.output.completion, state.metadata["options"], finish_of(state.output)
-        )
-        ok = reading.option == target.text
+    async def judge(state: TaskState, answer: str, finish: Finish) -> Score:
+        reading = read_answer(answer, state.metadata["options"], finish)
+        ok = reading.option == state.target.text
         outcome = reading.row_outcome
         if outcome == "read":
             outcome = "ok" if ok else "wrong"
@@ -117,7 +107,7 @@ def story_answer() -> Scorer:
             ok=ok, answer=reading.option, lines=[*head, "", *lines], metadata={"outcome": outcome}
         )
 
-    return score
+    return answer_scorer(judge)
 
 
 def _explanation(sample: dict[str, object]) -> tuple[str, ...]:

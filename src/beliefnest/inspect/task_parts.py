@@ -1,6 +1,6 @@
 """Common parts of all tasks: data sets of samples, conversations, scores with explanations."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 from typing import Any
 
 from inspect_ai import Task
@@ -12,7 +12,7 @@ from inspect_ai.model import (
     ChatMessageUser,
     ModelOutput,
 )
-from inspect_ai.scorer import CORRECT, INCORRECT, Score, Scorer
+from inspect_ai.scorer import CORRECT, INCORRECT, Score, Scorer, Target
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from beliefnest.errors import InputError, ModelError
@@ -57,13 +57,21 @@ def _unanswered(error: BaseException | None) -> str | None:
     return None if error is None or isinstance(error, NOT_ASKED) else str(error)
 
 
-def without_answer(state: TaskState) -> Score | None:
-    """Return the score of a sample whose model gave no answer; None: it gave one."""
-    reason = state.metadata.get(_NO_ANSWER)
-    if reason is None:
-        return None
-    lines = [f"{_NO_ANSWER}: {reason}"]
-    return score_of(ok=False, answer=None, lines=lines, metadata={"outcome": _NO_ANSWER})
+def answer_scorer(judge: Callable[[TaskState, str, Finish], Awaitable[Score]]) -> Scorer:
+    """Return a scorer of samples, of which those without an answer are wrong.
+
+    Args:
+        judge: Function that scores an answer, given with the reason for its end.
+    """
+
+    async def score(state: TaskState, target: Target) -> Score:
+        reason = state.metadata.get(_NO_ANSWER)
+        if reason is None:
+            return await judge(state, state.output.completion, finish_of(state.output))
+        lines = [f"{_NO_ANSWER}: {reason}"]
+        return score_of(ok=False, answer=None, lines=lines, metadata={"outcome": _NO_ANSWER})
+
+    return score
 
 
 def several_files(names: str | list[str]) -> list[str]:

@@ -6,20 +6,20 @@ from typing import Any
 from anyio.to_thread import run_sync
 from inspect_ai import Task
 from inspect_ai.dataset import Sample
-from inspect_ai.scorer import Score, Scorer, Target, scorer
+from inspect_ai.scorer import Score, Scorer, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from beliefnest.errors import InputError
 from beliefnest.inspect.metrics import CLUSTER, metrics_by
 from beliefnest.inspect.samples import ScenarioStage, requests_of
 from beliefnest.inspect.task_parts import (
-    finish_of,
+    answer_scorer,
     messages_of,
     score_of,
     several_files,
     task_of,
-    without_answer,
 )
+from beliefnest.llm.messages import Finish
 from beliefnest.plan.cells import variation_id
 from beliefnest.plan.scenario_cells import Cell
 from beliefnest.scenarios.expected import expected_json
@@ -122,11 +122,7 @@ def in_the_belief() -> Scorer:
     """Score an answer: run its program in the belief it is meant for, or judge its words."""
     stage = ScenarioStage()
 
-    async def score(state: TaskState, target: Target) -> Score:
-        lost = without_answer(state)
-        if lost is not None:
-            return lost
-        answer, finish = state.output.completion, finish_of(state.output)
+    async def judge(state: TaskState, answer: str, finish: Finish) -> Score:
         judged = await run_sync(stage.judged, state.metadata, answer, finish)
         outcome = judged.outcome
         probe_report = probe_json(outcome, "")
@@ -135,9 +131,9 @@ def in_the_belief() -> Scorer:
             lines += ["", f"What {outcome.probe.path} holds, and why:", *judged.grounds]
         return score_of(
             ok=outcome.ok,
-            answer=outcome.program or state.output.completion,
+            answer=outcome.program or answer,
             lines=lines,
             metadata={"outcome": outcome.outcome, **{key: probe_report[key] for key in _KEPT}},
         )
 
-    return score
+    return answer_scorer(judge)
