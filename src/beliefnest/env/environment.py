@@ -47,7 +47,7 @@ from beliefnest.owned import Owned
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.skills.calls import Call
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo
-from beliefnest.world.paths import BeliefPath, parse_path, path_text
+from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import Position
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.scripted.footpaths import InReach, Near
@@ -358,9 +358,9 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             return np.stack([self.action_masks(each) for each in self.possible_agents])
         return self._flat.mask(self._mind(agent))
 
-    def _mind(self, agent: str) -> ActorMind:
-        """Return what an agent knows about what it can do."""
-        things, state = self.known(agent), self.nest[path_text((agent,))].state
+    def _mind(self, agent: str, state: State | None = None) -> ActorMind:
+        """Return what an agent knows about what it can do; `state` is its belief, if at hand."""
+        things, state = self.known(agent), state or self.nest[path_text((agent,))].state
         ground = self._grounds.of(state.box, state.blocks.terrain).with_doors_opened
         feet = state.agents[agent].position
 
@@ -597,9 +597,12 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             self._orders[agent].note(states[path_text((agent,))])
         observations: dict[str, Any] = {}
         for agent in self.agents:
-            # Deepest paths first: computing a belief also computes those above it.
-            below = {p: self._belief(p, spoken=spoken) for p in self._nested_of[agent]}
-            own = self._belief((agent,), spoken=spoken)
+            state = states[path_text((agent,))]
+            below = {
+                path: self._belief(states[path_text(path)], spoken=spoken)
+                for path in self._nested_of[agent]
+            }
+            own = self._belief(state, spoken=spoken)
             beliefs = {path_text(path): each for path, each in below.items()}
             if beliefs:
                 infos[agent]["beliefs"] = beliefs
@@ -608,21 +611,22 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             else:
                 observations[agent] = {**own, "beliefs": beliefs} if beliefs else own
             if self._options.actions == "flat":
-                mask = self.action_masks(agent)
+                mask = self._flat.mask(self._mind(agent, state))
                 infos[agent]["action_mask"] = mask
                 observations[agent] = {**observations[agent], "action_mask": mask}
         return observations, infos
 
-    def _belief(self, path: BeliefPath, *, spoken: bool) -> Any:
-        text = path_text(path)
-        state = self.nest[text].state
+    def _belief(self, state: State, *, spoken: bool) -> Any:
+        """Return a belief as it is told; an agent's own is noted already."""
+        text, order = path_text(state.path), self._orders[state.path[0]]
         lines: Sequence[tuple[int, str, str]] = ()
         if spoken:
             read_before = self._heard.get(text, 0)
             self._heard[text] = len(state.chat)
             lines = state.chat[read_before:]
-        self._orders[path[0]].note(state)
-        return self._form(self._orders[path[0]], state, lines)
+        if len(state.path) > 1:
+            order.note(state)
+        return self._form(order, state, lines)
 
     def _form(self, order: KnownOrder, state: State, lines: Sequence[tuple[int, str, str]]) -> Any:
         if self._options.observations == "dict":

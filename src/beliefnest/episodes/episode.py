@@ -261,8 +261,11 @@ class Episode:
         if self._nest is None:
             return False
         is_last = len(self._parts) >= self.task.form.rounds * len(self._slots)
-        is_spent = self._budget.is_spent(self.nest.tick - self._start, self.spent)
-        return self.is_decided or is_last or is_spent
+        if self.is_decided or is_last:
+            return True
+        # Sum up what all rounds have spent only if there is a limit.
+        limits, ticks = self._budget, self.nest.tick - self._start
+        return limits != Budget() and limits.is_spent(ticks, self.spent)
 
     @property
     def is_decided(self) -> bool:
