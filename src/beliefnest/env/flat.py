@@ -29,7 +29,7 @@ from beliefnest.errors import InputError
 from beliefnest.skills.calls import Call
 from beliefnest.world.claims import Claim
 from beliefnest.world.registry import Registry, block_name
-from beliefnest.world.values import Box, Position, block_at
+from beliefnest.world.values import Box, Items, Position, block_at
 
 _NEAR = 2
 _MOST_OFFERS = 100_000
@@ -40,6 +40,8 @@ _TOO_MANY = (
 )
 _GOALS = ("agent", "container", "door", "lever", "button", "sign", "place", "cell")
 """Parts that name somewhere to go."""
+_WALKS = ("goToPosition", "giveItemToOther")
+"""Skills that end near their goal, not where a hand reaches it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +51,14 @@ class Offer:
     Attributes:
         skill: Name of the skill.
         parts: Numbers of the things that it is about, by part.
+        goal: The part that names where its agent goes; empty: it stays where it is.
+        distance: Distance from there at which it stands; None: where its hand reaches the place.
     """
 
     skill: str
     parts: tuple[tuple[str, int], ...]
+    goal: str = ""
+    distance: int | None = None
 
 
 @dataclass(frozen=True)
@@ -132,15 +138,28 @@ class FlatActions:
 
     def mask(self, mind: ActorMind) -> npt.NDArray[np.int8]:
         """Return 1 for each action that can begin as far as its agent knows, and 0 for others."""
-        values = self._values(mind)
+        values, state = self._values(mind), mind.state
+        own = state.agents[mind.agent].inventory
 
         @cache  # many actions are about one place
         def leads(part: str, thing: Any, near: float | None) -> bool:
             goal = _goal({part: thing}, mind)
             return _is_there(part, thing, mind) and mind.may_reach(goal, near)
 
-        can_begin = (_can_begin(offer, mind, values, leads) for offer in self.offers)
-        return np.fromiter(can_begin, np.int8, len(self.offers))
+        def can_begin(offer: Offer) -> bool:
+            try:
+                named = _named(offer, values)
+                if named.get("agent") == mind.agent or _lacks(offer.skill, named, state, own):
+                    return False
+                if offer.goal:
+                    return leads(offer.goal, named[offer.goal], offer.distance)
+                if "cell" in named:
+                    _block(named["cell"], mind)
+            except NotKnownError:
+                return False
+            return mind.may_speak or offer.skill not in SPEECH
+
+        return np.fromiter(map(can_begin, self.offers), np.int8, len(self.offers))
 
     def _values(self, mind: ActorMind) -> Mapping[str, Sequence[Any]]:
         """Return the things that numbers stand for, by part."""
@@ -155,32 +174,13 @@ def _named(offer: Offer, values: Mapping[str, Sequence[Any]]) -> Mapping[str, An
     Raises:
         NotKnownError: A number stands for nothing.
     """
+    named = {}
     for part, number in offer.parts:
-        if number >= len(values[part]):
+        things = values[part]
+        if number >= len(things):
             raise NotKnownError(f"it knows no {part} {number} so far")
-    return {part: values[part][number] for part, number in offer.parts}
-
-
-def _can_begin(
-    offer: Offer,
-    mind: ActorMind,
-    values: Mapping[str, Sequence[Any]],
-    leads: Callable[[str, Any, float | None], bool],
-) -> bool:
-    try:
-        named = _named(offer, values)
-        speaks = offer.skill in SPEECH
-        if speaks and "cell" in named:
-            _block(named["cell"], mind)
-        if named.get("agent") == mind.agent or _lacks(offer.skill, named, mind.state):
-            return False
-        if speaks or not named:
-            return mind.may_speak or not speaks
-        part = _goal_part(named)
-        is_walk = offer.skill in ("goToPosition", "giveItemToOther")
-        return leads(part, named[part], _distance(named) if is_walk else None)
-    except NotKnownError:
-        return False
+        named[part] = things[number]
+    return named
 
 
 def checked_cells(cells: Sequence[Any], box: Box) -> tuple[Position, ...]:
@@ -217,8 +217,10 @@ def _offers(calls: Calls, most: Mapping[str, int], *, speaks: bool) -> Iterator[
 def _each(skill: str, sizes: Mapping[str, int]) -> Iterator[Offer]:
     if math.prod(sizes.values()) > _MOST_OFFERS:
         raise InputError(_TOO_MANY)
+    goal = "" if skill in SPEECH else next((part for part in _GOALS if part in sizes), "")
+    distance = _distance(sizes) if skill in _WALKS else None
     for numbers in product(*map(range, sizes.values())):
-        yield Offer(skill, tuple(zip(sizes, numbers, strict=True)))
+        yield Offer(skill, tuple(zip(sizes, numbers, strict=True)), goal, distance)
 
 
 def _goal(named: Mapping[str, Any], mind: ActorMind) -> Position:
@@ -228,16 +230,12 @@ def _goal(named: Mapping[str, Any], mind: ActorMind) -> Position:
         NotKnownError: It does not know where another agent is.
     """
     if "agent" not in named:
-        where: Position = named[_goal_part(named)]
+        where: Position = next(named[part] for part in _GOALS if part in named)
         return where
     position = mind.state.agents[named["agent"]].position
     if position is None:
         raise NotKnownError(f"it does not know where {named['agent']} is")
     return block_at(position)
-
-
-def _goal_part(named: Mapping[str, Any]) -> str:
-    return next(part for part in _GOALS if part in named)
 
 
 def _distance(named: Mapping[str, Any]) -> int:
@@ -264,23 +262,24 @@ def _claim(named: Mapping[str, Any], mind: ActorMind) -> Claim:
     return Claim.located(named["item"], named["container"])
 
 
-def _lacks(skill: str, named: Mapping[str, Any], state: State) -> bool:
+def _lacks(skill: str, named: Mapping[str, Any], state: State, own: Items) -> bool:
     """Return True if the holder of a belief knows that what an action needs is not there."""
-    item, me = str(named.get("item")), state.agents[state.path[-1]]
-    there = state.blocks[named["cell"]] if "cell" in named else None
+    item = named.get("item", "")
     match skill:
         case "getItemFromChest":
             content = state.containers.get(named["container"])
             return content is not None and content.complete and not content.items.get(item, 0)
         case "depositItemIntoChest":
-            return not me.inventory.get(item, 0)
+            return not own.get(item, 0)
         case "mineBlock":
+            there = state.blocks[named["cell"]]
             return there is None or block_name(there) == "air"
         case "placeItem":
+            there = state.blocks[named["cell"]]
             is_taken = there is not None and Registry.load().is_solid(block_name(there))
-            return is_taken or not me.inventory.get(item, 0) or not Registry.load().has_block(item)
+            return is_taken or not own.get(item, 0) or not Registry.load().has_block(item)
         case "giveItemToOther":
-            return not me.inventory.get(item, 0) or not state.agents[named["agent"]].current
+            return not own.get(item, 0) or not state.agents[named["agent"]].current
     return False
 
 
