@@ -98,27 +98,15 @@ class Design:
         if not is_whole(self.seed):
             raise StudyKeyError("seed", f"seed is {quoted(self.seed)}; it must be a whole number")
         check_world(self.world, servers=False)
-        self._check_variations()
         draws = self.variations
+        if isinstance(draws, Mapping):
+            checked_lists(draws)
+        elif not is_count(draws):
+            why = f"variations is {quoted(draws)}; give a number, at least 1, or lists of values"
+            raise StudyKeyError("variations", why)
         lists = [draws] if isinstance(draws, int) else [len(each) for each in draws.values()]
         check_cells("variations", math.prod(lists))
         check_cells("repeats", self.repeats * len(self.models) * math.prod(lists))
-
-    def _check_variations(self) -> None:
-        variations = self.variations
-        if isinstance(variations, int):
-            if not is_count(variations):
-                raise StudyKeyError(
-                    "variations",
-                    f"variations is {quoted(variations)}; give at least 1, or lists of values",
-                )
-            return
-        if not isinstance(variations, Mapping):
-            raise StudyKeyError(
-                "variations",
-                f"variations is {quoted(variations)}; give a number, or lists of values",
-            )
-        checked_lists(variations)
 
     @property
     def setting(self) -> dict[str, Any]:

@@ -82,17 +82,10 @@ class EpisodeDesign:
     limits: RunLimits = field(default_factory=RunLimits)
 
     def __post_init__(self) -> None:
-        lists: Mapping[str, Sequence[Any]] = {
-            "tasks": self.tasks,
-            "policies": self.policies,
-            "models": self.models,
-            "orders": self.orders,
-            "seeds": self.seeds,
-        }
-        for name, values in lists.items():
-            check_once(name, values)
+        for name in ("tasks", "policies", "models", "orders", "seeds"):
+            check_once(name, getattr(self, name))
         for name in ("tasks", "seeds"):
-            if not lists[name]:
+            if not getattr(self, name):
                 raise StudyKeyError(name, f"a study without {name} has no cells; name at least one")
         if not self.policies and not self.models:
             raise StudyKeyError(

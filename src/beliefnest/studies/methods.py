@@ -19,7 +19,7 @@ from beliefnest.studies.counting import Row
 from beliefnest.studies.participants.exclusions import excluded_words
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.studies.table import CellKind
-from beliefnest.world.words import counted
+from beliefnest.world.words import counted, listed
 
 MethodsForm = Literal["markdown", "latex"]
 FORMATS: tuple[MethodsForm, ...] = get_args(MethodsForm)
@@ -250,10 +250,10 @@ def _factors(plan: Mapping[str, Any], kind: CellKind) -> Iterator[str]:
     if isinstance(variations, int):
         factor = f"{counted(variations, 'drawn variation')} of each scenario"
         varied = _varied(plan)
-        yield f"{factor} (in {_listed(varied)})" if varied else factor
+        yield f"{factor} (in {listed(varied)})" if varied else factor
     elif variations:
         lists = [f"{_code(n)} ({counted(len(v), 'value')})" for n, v in variations.items()]
-        yield f"all valid combinations of {_listed(lists)}"
+        yield f"all valid combinations of {listed(lists)}"
     word, plural = kind.player
     yield f"the {_several(word, plan[kind.players], plural=plural)}"
     if plan.get("templates"):
@@ -350,7 +350,7 @@ def _sentences(facts: RunFacts) -> Iterator[str]:
     details += [versions["platform"]] if "platform" in versions else []
     on = f" ({', '.join(details)})" if details else " (version not recorded)"
     yield f"The {facts.kind} was played with {program}{on} in the world {_code(facts.world)}."
-    yield f"It combines {facts.subjects} with {_listed(facts.factors)}."
+    yield f"It combines {facts.subjects} with {listed(facts.factors)}."
     seed = "" if facts.seed is None else f"; all random numbers derive from {facts.seed}"
     yield f"This makes {counted(facts.cells, 'cell')} and {counted(facts.rows, 'row')}{seed}."
     if facts.models:
@@ -366,7 +366,7 @@ def _sentences(facts: RunFacts) -> Iterator[str]:
             f"{_code(name)} ({'built in' if text is None else f'SHA-256 {text}'})"
             for name, text in facts.templates.items()
         ]
-        yield f"Prompts were rendered with {_listed(prompt_words)}."
+        yield f"Prompts were rendered with {listed(prompt_words)}."
     if facts.tokens or facts.cost or facts.unpriced:
         cost = f"cost {facts.cost:.2f} US dollars"
         if facts.unpriced:
@@ -395,7 +395,7 @@ def _sentences(facts: RunFacts) -> Iterator[str]:
         of = "" if facts.computed == facts.judged else some
         yield f"Right answers{of} were computed from the beliefs of the simulated agents."
     if facts.intervals:
-        yield f"The 95 % intervals of accuracies are by {_listed(facts.intervals)}."
+        yield f"The 95 % intervals of accuracies are by {listed(facts.intervals)}."
 
 
 def _exclusions(facts: RunFacts) -> Iterator[str]:
@@ -404,7 +404,7 @@ def _exclusions(facts: RunFacts) -> Iterator[str]:
     reasons_words = [excluded_words(each) for each in reasons if each]
     reasons_words += [_exclusion(name, count) for name, count in facts.excluded.items()]
     if reasons_words:
-        yield f"Excluded were {_listed(reasons_words)}."
+        yield f"Excluded were {listed(reasons_words)}."
     elif not facts.people:
         yield "Nothing was excluded."
     if facts.people:
@@ -429,7 +429,7 @@ def _models(models: Sequence[ModelFacts]) -> Iterator[str]:
     others = [_code(each.name) for each in models if not can_vary(each.name)]
     if others:
         are = "are no language models" if len(others) > 1 else "is no language model"
-        yield f"{_listed(others)} {are} of a provider"
+        yield f"{listed(others)} {are} of a provider"
 
 
 def _model(model: ModelFacts) -> str:
@@ -482,14 +482,7 @@ def _code(name: str) -> str:
 def _several(noun: str, names: Sequence[object], mark: str = _MARK, plural: str = "") -> str:
     marked = [f"{mark}{name}{mark}" for name in names]
     word = noun if len(names) == 1 else plural or f"{noun}s"
-    return f"{word} {_listed(marked)}"
-
-
-def _listed(parts: Sequence[str]) -> str:
-    """Return parts as `a, b and c`."""
-    if len(parts) < 2:
-        return "".join(parts)
-    return f"{', '.join(parts[:-1])} and {parts[-1]}"
+    return f"{word} {listed(marked)}"
 
 
 def _markdown(sentence: str) -> str:

@@ -97,7 +97,8 @@ def read_answers(file: Path) -> list[PersonAnswer]:
         rows = _json_rows(file, content)
         spoilt = spoilt_number
     else:
-        rows = _csv_rows(file, content)
+        sheet = decode_sheet(content, str(file), _NEEDED)
+        rows = [(f"{file}:{line}", row) for line, row in sheet.rows]
         spoilt = spoilt_text
     made = [
         _answer(where, row, spoilt)
@@ -110,12 +111,18 @@ def read_answers(file: Path) -> list[PersonAnswer]:
     return made
 
 
-def with_pseudonyms(answers: Sequence[PersonAnswer]) -> list[PersonAnswer]:
-    """Return answers with `p1`, `p2` and so on for ids, in the order in which sessions began."""
+def first_sessions(answers: Iterable[PersonAnswer]) -> dict[str, str]:
+    """Return the time at which each participant's first session began."""
     began: dict[str, str] = {}
     for answer in answers:
         first = began.setdefault(answer.participant, answer.started)
         began[answer.participant] = min(first, answer.started)
+    return began
+
+
+def with_pseudonyms(answers: Sequence[PersonAnswer]) -> list[PersonAnswer]:
+    """Return answers with `p1`, `p2` and so on for ids, in the order in which sessions began."""
+    began = first_sessions(answers)
     ordered = sorted(began, key=lambda participant: (began[participant], participant))
     names = {participant: f"p{number}" for number, participant in enumerate(ordered, 1)}
     return [
@@ -141,11 +148,6 @@ def _json_rows(file: Path, content: bytes) -> _Rows:
     except msgspec.MsgspecError as error:
         raise InputError(f"{file} is no JSON list of answers: {error}") from None
     return [(f"{file}, entry {number}", row) for number, row in enumerate(rows, 1)]
-
-
-def _csv_rows(file: Path, content: bytes) -> _Rows:
-    sheet = decode_sheet(content, str(file), _NEEDED)
-    return [(f"{file}:{line}", row) for line, row in sheet.rows]
 
 
 def _answer(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) -> PersonAnswer:

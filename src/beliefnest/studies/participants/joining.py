@@ -13,7 +13,7 @@ from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.judging import outcome_of
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply
 from beliefnest.scenarios.records import probe_json
-from beliefnest.studies.participants.answers import PersonAnswer
+from beliefnest.studies.participants.answers import PersonAnswer, first_sessions
 from beliefnest.studies.participants.items import Item, ItemQuestion
 from beliefnest.studies.participants.playing import Judged
 from beliefnest.studies.study_folder import PersonCell
@@ -87,10 +87,7 @@ def counted_answers(answers: Sequence[PersonAnswer], notes: list[str]) -> _Sessi
     Raises:
         InputError: Two files contradict each other.
     """
-    firsts: dict[str, str] = {}
-    for answer in answers:
-        before = firsts.setdefault(answer.participant, answer.started)
-        firsts[answer.participant] = min(before, answer.started)
+    firsts = first_sessions(answers)
     later = {each.participant for each in answers if each.started != firsts[each.participant]}
     for participant in sorted(later):
         notes.append(

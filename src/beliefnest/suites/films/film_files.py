@@ -13,6 +13,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.minds.infer_entries import MOST_HYPOTHESES
+from beliefnest.studies.checking import is_whole
 from beliefnest.suites.films.film import (
     NOTHING,
     Film,
@@ -76,7 +77,7 @@ def films_from(content: Mapping[str, Any]) -> list[Film]:
     for number, entry in enumerate(entries, 1):
         owner = _owner(entry, number)
         index = entry.get("world_set", 1 if len(worlds) == 1 else None)
-        if not _is_whole(index) or not 1 <= index <= len(worlds):
+        if not is_whole(index) or not 1 <= index <= len(worlds):
             raise InputError(
                 f"{owner}: world_set is {quoted(index)}; give the number of a world, 1 to "
                 f"{len(worlds)}"
@@ -504,7 +505,7 @@ class _Reader:
 
     def cell(self, numbers: object, key: str) -> FilmCell:
         """Return two whole numbers."""
-        if not isinstance(numbers, list) or len(numbers) != 2 or not all(map(_is_whole, numbers)):
+        if not isinstance(numbers, list) or len(numbers) != 2 or not all(map(is_whole, numbers)):
             raise self.fault(f"{key} has {quoted(numbers)}; give two whole numbers [x, y]")
         return int(numbers[0]), int(numbers[1])
 
@@ -545,10 +546,6 @@ def _joined(goals: Iterable[str | None]) -> str:
 
 def _is_name(value: object) -> bool:
     return isinstance(value, str) and value not in ("", _UNKNOWN, NOTHING) and "." not in value
-
-
-def _is_whole(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool)
 
 
 def _is_number(value: object) -> bool:
