@@ -32,15 +32,17 @@ describe('the bundle', () => {
     assert.deepEqual(await node.exited, { code: null, signal: 'SIGKILL' })
   })
 
-  it('does as the sources do', async () => {
+  it('does as the sources do, with the same seed', async () => {
     const frames = []
+    const roam = 'for (let i = 0; i < 3; i++) { await goToPosition(bot, new Vec3(Math.floor(Math.random() * 9), -51, 3), 1); bot.chat(String(Math.random())) }'
     for (const main of [path.join(folder, 'main.js'), undefined]) {
       const node = new Node(main)
-      await node.hello()
+      await node.hello(5)
       await node.request('create_region', region('a'))
       await node.request('run', {
-        region: 'a', timeout_ticks: 400, programs: { anne: 'await goToPosition(bot, new Vec3(-7, -51, -7)); await think(bot, "here")' }
+        region: 'a', timeout_ticks: 400, programs: { sally: roam, anne: 'await goToPosition(bot, new Vec3(-7, -51, -7)); await think(bot, "here")' }
       })
+      assert.ok(JSON.stringify(node.frames).includes('chat'))
       frames.push(node.frames)
       await node.close()
     }
