@@ -147,10 +147,14 @@ class NodeView:
             )
         return ByEitherHalf(beliefs, self.container_at)
 
-    def container_at(self, place: Position) -> Position:
-        """Return the position of the container to which a block belongs, as far as is believed."""
+    @Part
+    def container_at(self) -> Callable[[Position], Position]:
+        """Function of a block: the position of its container, as far as is believed."""
+        # A function of the view would be a cycle of references: the forest would keep the view, and
+        # read all of it before each entry, until Python's collector of cycles came along.
+        registry = self._forest.context.registry
         state_at = states_in(self.box, self.terrain, UNKNOWN)
-        return believed_container_at(self._forest.context.registry, state_at, place)
+        return lambda place: believed_container_at(registry, state_at, place)
 
     @Part
     def agents(self) -> Mapping[str, AgentBelief]:

@@ -1,6 +1,8 @@
 """Looks in a box of chunks are those in a dense box, also for states that were kept."""
 
+import gc
 import random
+from weakref import ref
 
 import numpy as np
 import pytest
@@ -85,6 +87,20 @@ def test_looks_in_a_state_stay_the_same_after_later_ticks(monkeypatch):
     nest.reader.advance(key, forest, forest.position + 3)
     assert before == looks(nest, kept)
     assert before != looks(nest, NodeView(forest, ("ann",)))
+
+
+@pytest.mark.parametrize("path", ["/", "/ann", "/ann/bob"])
+def test_a_state_that_nobody_holds_is_gone_at_once_so_that_no_fold_reads_it(path):
+    with story(16.0) as nest:
+        state = nest[path].state
+        read = [getattr(state, part) for part in ("agents", "containers", "items", "blocks")]
+        reference = ref(state)
+        gc.disable()  # only a cycle of references would wait for the collector
+        try:
+            del state, read
+            assert reference() is None
+        finally:
+            gc.enable()
 
 
 def test_a_view_covers_the_part_within_the_visible_distance_and_is_told_in_runs():
