@@ -54,5 +54,5 @@ def participants(world: Played, path: str) -> object:
     probe = Probe(path=path, acts_in=path, agent="ann", task="", expect=(asked,))
     key = CellKey("pair", "", None, {}, "people", "", 1, {})
     cell = Cell(key, Scenario(world.nest.setting, probes=(probe,)))
-    item = Item("item", cell, (ItemQuestion("1.1", 0, asked),))
+    item = Item("item", cell, (ItemQuestion(0, 0, asked),))
     return experiment([(item, [view_of(world.nest, path, 0, "both")])], "both", 0)

@@ -15,14 +15,19 @@ class ItemQuestion:
     """Question of a probe, as participants answer it.
 
     Attributes:
-        id: Number of the probe and number of the question in it, such as `1.2`.
         probe: Index of the probe in the scenario.
+        index: Index of the question in the probe.
         asked: The question.
     """
 
-    id: str
     probe: int
+    index: int
     asked: Answers
+
+    @property
+    def id(self) -> str:
+        """Number of the probe and number of the question in it, such as `1.2`."""
+        return f"{self.probe + 1}.{self.index + 1}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,8 +111,8 @@ def _why_left_out(probe: Probe) -> str:
 def _questions(probes: Sequence[Probe]) -> Iterator[ItemQuestion]:
     for number, probe in enumerate(probes):
         if not _why_left_out(probe):
-            for place, asked in enumerate(probe.questions, 1):
-                yield ItemQuestion(f"{number + 1}.{place}", number, asked)
+            for index, asked in enumerate(probe.questions):
+                yield ItemQuestion(number, index, asked)
 
 
 def item_name(cell: Cell) -> str:

@@ -220,8 +220,7 @@ def _missing(
 
 def _judge(by: Judged, question: ItemQuestion) -> Answers:
     """Return a question with its right answers."""
-    place = int(question.id.partition(".")[2]) - 1
-    return by.probes[question.probe].questions[place]
+    return by.probes[question.probe].questions[question.index]
 
 
 def _judged(asked: Answers, answer: PersonAnswer) -> Judgement:
