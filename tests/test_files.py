@@ -5,7 +5,7 @@ import os
 import pytest
 
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.files import make_folder, read_regular, read_regular_text
+from beliefnest.files import make_folder, os_errors_of, read_regular, read_regular_text
 from beliefnest.llm import resolve_model
 from beliefnest.prompts.templates import load_template
 from beliefnest.scenarios.scenario import Scenario
@@ -61,3 +61,12 @@ def test_a_file_in_place_of_a_folder_is_named(tmp_path, below):
         make_folder(tmp_path / "mine" / below)
     make_folder(tmp_path / "new" / below)
     assert (tmp_path / "new" / below).is_dir()
+
+
+def test_errors_of_the_system_name_the_file_and_what_to_do(tmp_path):
+    file = tmp_path / "missing.json"
+    fault = r"missing\.json cannot be read: No such file .*; write one"
+    with pytest.raises(InputError, match=fault), os_errors_of(file, "read", "write one"):
+        read_regular(file)
+    with pytest.raises(ValueError, match="other"), os_errors_of(file, "read"):
+        raise ValueError("other")

@@ -49,6 +49,22 @@ def make_folder(folder: Path) -> None:
         ) from None
 
 
+@contextmanager
+def os_errors_of(place: object, done: str, remedy: str = "") -> Iterator[None]:
+    """Raise InputError in place of an error of the system, with the name of a file.
+
+    Args:
+        place: The file, or words for it.
+        done: What cannot be done with it: `read` or `written`.
+        remedy: What to do, for the end of the message.
+    """
+    try:
+        yield
+    except OSError as error:
+        end = f"; {remedy}" if remedy else ""
+        raise InputError(f"{place} cannot be {done}: {error.strerror}{end}") from None
+
+
 def open_regular(path: Path) -> BinaryIO:
     """Open a regular file for binary reading.
 

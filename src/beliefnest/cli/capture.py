@@ -8,7 +8,7 @@ from pathlib import Path
 from beliefnest.cli.options import CaptureOptions
 from beliefnest.cli.terminal_text import printable, say
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.files import new_file, read_regular
+from beliefnest.files import new_file, os_errors_of, read_regular
 from beliefnest.scenarios.writing import scenario_text
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
@@ -36,11 +36,8 @@ def write_capture(options: CaptureOptions) -> None:
         raise InputError(f"{out} exists already; choose another name")
     captured = _captured(options)
     text = scenario_text(options.name or _name(out), _description(options), captured.snapshot)
-    try:
-        with new_file(out) as file:
-            file.write(text.encode())
-    except OSError as error:
-        raise InputError(f"{out} cannot be written: {error.strerror}") from None
+    with os_errors_of(out, "written"), new_file(out) as file:
+        file.write(text.encode())
     for sentence in captured.left_out:
         sys.stderr.write(printable(f"left out: {sentence}") + "\n")
     say(f"{out} is written; run it with: beliefnest run {out}\n")

@@ -8,7 +8,7 @@ from typing import Any
 
 from beliefnest.cli.scenario_editing import drawn_starter, edited
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.files import read_regular_text, replace_file
+from beliefnest.files import os_errors_of, read_regular_text, replace_file
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.scenario import Scenario
@@ -100,10 +100,8 @@ class FileEditor:
                 raise InputError(
                     f"{self._file} was changed by another program; copy your text and load anew"
                 )
-            try:
+            with os_errors_of(self._file, "written"):
                 replace_file(self._file, text)
-            except OSError as error:
-                raise InputError(f"{self._file} cannot be written: {error.strerror}") from None
             self._saved = text
         return {"saved": self._file.name}
 

@@ -11,7 +11,7 @@ from typing import Any
 from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.playing import playing
 from beliefnest.errors import InputError
-from beliefnest.files import replace_file
+from beliefnest.files import os_errors_of, replace_file
 from beliefnest.studies.study import Study
 
 
@@ -186,7 +186,5 @@ def _write_page(page: Path, lines: Sequence[Mapping[str, Any]], about: str) -> N
         "offline model. Copies are mirrored, turned and renamed.\n\n"
         f"{text}\n\n{about}.\n"
     )
-    try:
+    with os_errors_of(page, "written"):
         replace_file(page, content)
-    except OSError as error:
-        raise InputError(f"{page} cannot be written: {error.strerror}") from None

@@ -11,7 +11,7 @@ from beliefnest.cli.console import Printed, print_report, progress_on, result_ta
 from beliefnest.cli.options import PowerOptions, StatsOptions
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError
-from beliefnest.files import replacing
+from beliefnest.files import os_errors_of, replacing
 from beliefnest.scenarios.judging import LOST
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
@@ -65,11 +65,8 @@ def _draw(result: StudyResult, file: Path, by: list[str] | None) -> None:
     if file.suffix not in kinds:
         raise InputError(f"{file} is no picture; give a name that ends with {', '.join(kinds)}")
     figure = result.plot(by)
-    try:
-        with replacing(file) as out:
-            figure.savefig(out, format=file.suffix[1:])
-    except OSError as error:
-        raise InputError(f"{file} cannot be written: {error.strerror}") from None
+    with os_errors_of(file, "written"), replacing(file) as out:
+        figure.savefig(out, format=file.suffix[1:])
 
 
 def _fits(result: StudyResult, options: StatsOptions) -> list[dict[str, Any]]:

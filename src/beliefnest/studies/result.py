@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import InputError
-from beliefnest.files import replace_file
+from beliefnest.files import os_errors_of, replace_file
 from beliefnest.studies.archive import write_zip
 from beliefnest.studies.bundling import bundled
 from beliefnest.studies.counting import count_rows
@@ -238,10 +238,8 @@ class StudyResult(StudyRecord):
 
         path = Path(file)
         text = page_text(self, self.checked(self.groups if by is None else by))
-        try:
+        with os_errors_of(path, "written"):
             replace_file(path, text)
-        except OSError as error:
-            raise InputError(f"{path} cannot be written: {error.strerror}") from None
         return path
 
     def bundle(self, file: str | Path, *, runs: bool = False) -> Path:

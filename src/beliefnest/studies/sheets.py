@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular
+from beliefnest.files import os_errors_of, read_regular
 from beliefnest.world.texts import quoted
 
 _DELIMITERS = (",", ";", "\t", "|")
@@ -51,10 +51,8 @@ class Sheet:
 
 def read_sheet(file: Path, needed: Sequence[str] = ()) -> Sheet:
     """Return the content of a CSV file; raise InputError as `decode_sheet`, or if it is none."""
-    try:
+    with os_errors_of(file, "read"):
         content = read_regular(file)
-    except OSError as error:
-        raise InputError(f"{file} cannot be read: {error.strerror}") from None
     return decode_sheet(content, str(file), needed)
 
 

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import make_folder, read_regular, replace_file, replacing
+from beliefnest.files import make_folder, os_errors_of, read_regular, replace_file, replacing
 from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.locking import is_lock
@@ -81,7 +81,7 @@ class StudyFolder:
         """
         folder = StudyFolder(Path(path), kind)
         make_folder(folder.path)
-        try:
+        with os_errors_of(f"the folder {path}", "written"):
             # A study that repeats another one may begin with a folder of cached answers alone.
             strange = any(
                 each != folder.answers and not is_lock(each) for each in folder.path.iterdir()
@@ -90,8 +90,6 @@ class StudyFolder:
             if strange and not folder.cells.is_dir():
                 raise InputError(f"{path} is not empty and holds no study; name another folder")
             folder.cells.mkdir(exist_ok=True)
-        except OSError as error:
-            raise InputError(f"the folder {path} cannot be written: {error.strerror}") from None
         return folder
 
     @staticmethod

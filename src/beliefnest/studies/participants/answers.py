@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import decode_json, read_regular
+from beliefnest.files import decode_json, os_errors_of, read_regular
 from beliefnest.studies.sheets import decode_sheet, spoilt_number, spoilt_text
 from beliefnest.world.texts import quoted
 
@@ -89,10 +89,8 @@ def read_answers(file: Path) -> list[PersonAnswer]:
     Raises:
         InputError: The file has another form; the message names file, row and column.
     """
-    try:
+    with os_errors_of(file, "read"):
         content = read_regular(file)
-    except OSError as error:
-        raise InputError(f"{file} cannot be read: {error.strerror}") from None
     if content.removeprefix(codecs.BOM_UTF8).lstrip().startswith(b"["):
         rows = _json_rows(file, content)
         spoilt = spoilt_number

@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import decode_json, read_regular
+from beliefnest.files import decode_json, os_errors_of, read_regular
 from beliefnest.perception.options import ContainerMode, Testimony
 from beliefnest.scenarios.document import key_words
 from beliefnest.scenarios.form_faults import FormError, converted
@@ -55,10 +55,8 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> ReadStories:
     Raises:
         InputError: The file does not exist, or lacks a line of `rows`.
     """
-    try:
+    with os_errors_of(path, "read", "give JSON lines"):
         lines = read_regular(path).splitlines()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}; give JSON lines") from None
     missing = sorted(set(rows or ()) - set(range(1, len(lines) + 1)))
     if missing:
         raise InputError(f"{path} has no line {missing[0]}; it has lines 1 to {len(lines)}")
