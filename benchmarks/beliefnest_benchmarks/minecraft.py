@@ -4,8 +4,9 @@ import itertools
 import os
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
+
+from msgspec.structs import replace
 
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario

@@ -5,10 +5,10 @@ Each check raises AssertionError, which says what the plugin did and what it sho
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.episode import Episode

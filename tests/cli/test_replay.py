@@ -1,9 +1,9 @@
 """`beliefnest replay`, `export` and `import`, and plans tried in branches."""
 
 import json
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line

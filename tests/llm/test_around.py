@@ -1,9 +1,9 @@
 """Limits, cache, recordings and scripts that a run puts around a model."""
 
-import dataclasses
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -102,7 +102,7 @@ def test_the_reason_for_the_end_of_an_answer_is_kept_and_recorded(fake, clock, t
     cut = cached(fake, clock, tmp_path / "c", record=tmp_path / "r.jsonl").answer(ASK, Sampling())
     replay = resolve_model(f"replay:{tmp_path / 'r.jsonl'}", {})
     for again in (cached(fake, clock, tmp_path / "c"), replay):
-        assert again.answer(ASK, Sampling()) == dataclasses.replace(cut, cached=True)
+        assert again.answer(ASK, Sampling()) == replace(cut, cached=True)
     assert cut.finish == "length"
 
 
@@ -122,7 +122,7 @@ def test_a_run_is_repeated_from_its_cache_without_the_model(fake, clock, tmp_pat
     first = cached(fake, clock, tmp_path / "cache").answer(ASK, Sampling(seed=1))
     budget = RunSpending(RunLimits(tokens=0))
     again = cached(fake, clock, tmp_path / "cache", budget=budget).answer(ASK, Sampling(seed=1))
-    assert again == dataclasses.replace(first, cached=True)
+    assert again == replace(first, cached=True)
     assert len(fake.requests) == 1
     assert budget.spent == Usage()
 

@@ -1,7 +1,7 @@
 """Requests for programs, and faults sent back."""
 
-import dataclasses
 from collections import deque
+from dataclasses import replace
 
 import pytest
 
@@ -94,7 +94,7 @@ def test_no_attempts_are_refused():
 def test_a_program_that_the_model_did_not_finish_is_none(finish, complaint):
     class Cut(Listening):
         def answer(self, messages, sampling):
-            return dataclasses.replace(super().answer(messages, sampling), finish=finish)
+            return replace(super().answer(messages, sampling), finish=finish)
 
     with pytest.raises(NoUsableProgramError, match=complaint) as caught:
         ask_for_program(Cut("", fenced("a();")), "Do it.", lambda _: None, attempts=2)

@@ -1,7 +1,6 @@
 """Doors of environments for learners: nested beliefs as arrays, masks, and what is rendered."""
 
-from dataclasses import replace
-
+from msgspec.structs import replace
 from tests.noninterference.doors import door
 from tests.noninterference.environment_doors import _BOUNDS
 from tests.noninterference.pairs import AGENTS, Played

@@ -1,8 +1,7 @@
 """The built-in filters beyond the golden text."""
 
-import dataclasses
-
 import pytest
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.view import FixedState
@@ -22,7 +21,7 @@ def show(expression, branch=None, **variables):
 
 
 def changed(**changes):
-    return example_mind(dataclasses.replace(example_branch().state, **changes))
+    return example_mind(replace(example_branch().state, **changes))
 
 
 def nothing_known(path=("sally",)):
@@ -79,7 +78,7 @@ def test_known_to_have_nothing_is_empty():
 
 def test_another_agent_prints_its_position_only_while_it_is_seen():
     state = example_branch().state
-    anne = dataclasses.replace(state.agents["anne"], current=True)
+    anne = replace(state.agents["anne"], current=True)
     branch = changed(agents={**state.agents, "anne": anne})
     assert show('position("anne")', branch) == "[2.5, -51, -5.5]"
     assert show('position("anne")') == "Cannot be seen"

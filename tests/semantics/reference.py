@@ -13,10 +13,11 @@ program's. Where the semantics leave something open, the choice made here is:
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
+from msgspec.structs import replace
 from tests.semantics.reference_rules import UNKNOWN, Node, Rules, known_block
 from tests.semantics.reference_testimony import Ear, read
 from tests.semantics.reference_unique import remove

@@ -1,10 +1,12 @@
 """Perception and update written from the text of the semantics alone; slow, block by block."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import dist
 from typing import Any
 
+import msgspec
 import numpy as np
+from msgspec.structs import replace
 from tests.semantics.reference_testimony import Ear, Matter, hear, read
 from tests.semantics.reference_unique import see_alone, see_moved
 
@@ -28,8 +30,7 @@ TOUCHES = (*MOVES, EventKind.OPEN_CONTAINER)
 UNKNOWN = -1
 
 
-@dataclass(frozen=True)
-class Block:
+class Block(msgspec.Struct, frozen=True):
     """A known block: state id, what it rests on, whether that is a perception of this tick.
 
     `text` is what is written on it, `claims` what that claims.

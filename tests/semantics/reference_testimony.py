@@ -12,9 +12,11 @@ Where the text leaves something open, the choice made here is:
 * Nobody can be told where they are themselves.
 """
 
-from dataclasses import dataclass, field, replace
+import dataclasses
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from msgspec.structs import replace
 from tests.semantics.reference_unique import is_perceived_elsewhere, remove
 
 from beliefnest.belief.grounds import Basis, ContainerBelief, Source
@@ -59,7 +61,7 @@ class Ear:
     verdicts: dict[Any, bool] = field(default_factory=dict)
 
     def copy(self) -> "Ear":
-        return replace(
+        return dataclasses.replace(
             self,
             missed=dict(self.missed),
             watched=dict(self.watched),

@@ -10,8 +10,9 @@ Where the text leaves something open, the choice made here is:
 """
 
 from collections.abc import Collection
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import Basis, Source
 from beliefnest.world.values import Position

@@ -5,13 +5,13 @@ turn comes is left out, so that a story shrinks to any part of itself.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from math import pi
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from hypothesis import strategies as st
 
 import beliefnest as bn
@@ -34,8 +34,7 @@ Act = tuple[Any, ...]
 """Name of a method of `ScriptedWorld`, or `tick`, `edit`, `switch` or `in`, and its arguments."""
 
 
-@dataclass(frozen=True)
-class Story:
+class Story(msgspec.Struct, frozen=True):
     """A start and what happens then."""
 
     blocks: Mapping[Position, str]
@@ -43,14 +42,14 @@ class Story:
     options: Mapping[str, Any]
     acts: tuple[Act, ...] = ()
     static: tuple[str, ...] = ()
-    contents: Mapping[Position, Items] = field(
+    contents: Mapping[Position, Items] = msgspec.field(
         default_factory=lambda: {place: {"emerald": 2} for place in CONTAINERS}
     )
     initial: tuple[bn.InitialBelief, ...] = ()
-    yaws: Mapping[str, float] = field(default_factory=dict)
-    signs: Mapping[Position, str] = field(default_factory=dict)
-    sign_claims: Mapping[Position, list[bn.Claim]] = field(default_factory=dict)
-    unique: Mapping[str, str] = field(default_factory=dict)
+    yaws: Mapping[str, float] = msgspec.field(default_factory=dict)
+    signs: Mapping[Position, str] = msgspec.field(default_factory=dict)
+    sign_claims: Mapping[Position, list[bn.Claim]] = msgspec.field(default_factory=dict)
+    unique: Mapping[str, str] = msgspec.field(default_factory=dict)
     """Unique item to who has it at first; `hand NAME`: in the hand."""
     box: str = "small"
     """Key of `BOXES`."""

@@ -1,10 +1,14 @@
 """Stories and states renamed, mirrored and turned, as plain values."""
 
+import dataclasses
 from collections.abc import Callable
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass
 from math import cos, pi, sin
 from typing import Any
 
+import msgspec
+from msgspec import structs
+from msgspec.structs import replace
 from tests.semantics.stories import HIGH, Act, Story
 
 from beliefnest.belief.grounds import AgentBelief
@@ -63,9 +67,12 @@ class Symmetry:
             return self._point(value) if _is_point(value) else tuple(map(self.value, value))
         if isinstance(value, AgentBelief) and value.position is not None:
             value = replace(value, yaw=self.turned(value.yaw))
+        if isinstance(value, msgspec.Struct):
+            inner = {name: self.value(part) for name, part in structs.asdict(value).items()}
+            return replace(value, **inner)
         if is_dataclass(value) and not isinstance(value, type):
             inner = {part.name: self.value(getattr(value, part.name)) for part in fields(value)}
-            return replace(value, **inner)
+            return dataclasses.replace(value, **inner)
         return value
 
     def _point(self, point: tuple[Any, ...]) -> tuple[Any, ...]:

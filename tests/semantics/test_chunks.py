@@ -1,9 +1,8 @@
 """Beliefs in boxes whose cells are in chunks: as the slow reference says, and as without chunks."""
 
-from dataclasses import replace
-
 import pytest
 from hypothesis import HealthCheck, given, settings
+from msgspec.structs import replace
 from tests.profiles import at_night, few_by_day
 from tests.semantics.stories import NAMES, Stage, Stories, Story
 from tests.semantics.test_against_reference import compare

@@ -1,11 +1,11 @@
 """Laws of the nest (semantics, section 5), as properties of random stories."""
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 from tests.nest.comparing import everything, values
 from tests.nest.places import wall
 from tests.profiles import at_night

@@ -1,8 +1,7 @@
 """Records that tests put into run files."""
 
-from dataclasses import replace
-
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey

@@ -2,13 +2,13 @@
 
 import math
 import struct
-from dataclasses import replace
 
 import msgspec
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 from tests.profiles import at_night
 
 from beliefnest.errors import StoreError

@@ -1,8 +1,7 @@
 """The first thing two histories do not agree on."""
 
-from dataclasses import replace
-
 import pytest
+from msgspec.structs import replace
 
 from beliefnest.timeline.compare import EntryDifference, first_difference
 from beliefnest.timeline.journal import Edit

@@ -3,11 +3,11 @@
 import json
 import re
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from beliefnest.errors import BranchError, InputError
 from beliefnest.timeline.export import FORMATS, export

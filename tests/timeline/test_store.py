@@ -7,10 +7,10 @@ import subprocess
 import sys
 import tempfile
 from contextlib import closing
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 from tests.timeline.stored import LONG, MAIN, PLAN, PROGRAM, PROMPT, RUN, kept, verify
 
 from beliefnest.errors import BranchError, InputError, StoreError

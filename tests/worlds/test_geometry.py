@@ -1,12 +1,12 @@
 """Bodies stand and pass alike in Minecraft, in the scripted world and on the maps of planners."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import cache
 from random import Random
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from tests.profiles import at_night, few_by_day
 
 import beliefnest as bn

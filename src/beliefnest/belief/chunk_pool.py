@@ -1,9 +1,9 @@
 """Pool of the chunks of all nodes of a table, for boxes in which nodes hold no dense arrays."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -17,8 +17,7 @@ from beliefnest.world.values import Position
 Blocks = npt.NDArray[np.signedinteger[Any]]
 
 
-@dataclass(frozen=True, slots=True)
-class CutGrids:
+class CutGrids(msgspec.Struct, frozen=True):
     """Grids of the box cut into chunks, each different chunk once.
 
     Attributes:

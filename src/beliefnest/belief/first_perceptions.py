@@ -8,10 +8,10 @@ blocks are not part of the digest: each cache belongs to one set of shapes (`per
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from threading import Lock
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -25,8 +25,7 @@ _LARGEST = 1 << 20
 _Array = npt.NDArray[Any]
 
 
-@dataclass(frozen=True, slots=True)
-class _Seen:
+class _Seen(msgspec.Struct, frozen=True):
     """Result of a first perception: the nodes' arrays, and rows of changes."""
 
     nodes: Sequence[_Array]

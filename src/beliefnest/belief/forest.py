@@ -6,10 +6,10 @@ contents, possessions and dropped items, `EntryTestimony` with claims.
 
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 from weakref import ref
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -49,8 +49,7 @@ class StateReader(Protocol):
         """Read all parts now that the forest will overwrite."""
 
 
-@dataclass(frozen=True, slots=True)
-class ForestState:
+class ForestState(msgspec.Struct, frozen=True):
     """Plain data of a forest apart from its nodes.
 
     Attributes:
@@ -76,8 +75,7 @@ class ForestState:
     sign_cells: tuple[int, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class NodeState:
+class NodeState(msgspec.Struct, frozen=True):
     """One node of a forest as plain data; `heard` has a bit for each event of the timeline."""
 
     row: SavedNode

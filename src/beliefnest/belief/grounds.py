@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+import msgspec
+
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Block, Items, Point, Position
@@ -25,8 +27,7 @@ SOURCES = tuple(Source)
 """The sources in order of the codes that stand for them in arrays."""
 
 
-@dataclass(frozen=True, slots=True)
-class Basis:
+class Basis(msgspec.Struct, frozen=True):
     """The ground of an entry.
 
     Attributes:
@@ -42,8 +43,7 @@ class Basis:
     speaker: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class ContainerBelief:
+class ContainerBelief(msgspec.Struct, frozen=True):
     """Believed content of a container.
 
     Attributes:
@@ -59,8 +59,7 @@ class ContainerBelief:
     current: bool
 
 
-@dataclass(frozen=True, slots=True)
-class AgentBelief:
+class AgentBelief(msgspec.Struct, frozen=True):
     """Believed pose and possessions of an agent.
 
     Attributes:
@@ -82,7 +81,7 @@ class AgentBelief:
     pitch: float = 0.0
     on_ground: bool = True
     equipment: Mapping[str, str] | None = None
-    inventory: Items = field(default_factory=dict)
+    inventory: Items = msgspec.field(default_factory=dict)
     inventory_complete: bool = False
     health: float | None = None
     food: float | None = None
@@ -90,8 +89,7 @@ class AgentBelief:
     current: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class PerceivedEvent:
+class PerceivedEvent(msgspec.Struct, frozen=True):
     """Event as an observer perceived it: tick, kind, actor and details."""
 
     tick: int

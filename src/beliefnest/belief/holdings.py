@@ -5,8 +5,11 @@ after the kernel, entry by entry, shallower nodes first.
 """
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.grounds import Basis, Source
@@ -14,8 +17,7 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.values import Box, DroppedItem, Event, Items
 
 
-@dataclass(frozen=True, slots=True)
-class Content:
+class Content(msgspec.Struct, frozen=True):
     """Content of a container as a node believes it.
 
     Attributes:
@@ -66,8 +68,7 @@ class Whereabouts(NamedTuple):
     number: int
 
 
-@dataclass(frozen=True, slots=True)
-class Sole:
+class Sole(msgspec.Struct, frozen=True):
     """Last perception of a unique item.
 
     Attributes:
@@ -81,8 +82,7 @@ class Sole:
     basis: Basis
 
 
-@dataclass(frozen=True, slots=True)
-class SignTold:
+class SignTold(msgspec.Struct, frozen=True):
     """Verdicts of a node on the claims of a sign.
 
     Attributes:

@@ -6,10 +6,12 @@ one node.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from beliefnest.belief.arrays import UNKNOWN
 from beliefnest.belief.columns import cell_of, place_of
@@ -53,8 +55,7 @@ class RootFacts:
         return RootFacts(self.seen_at, set(self.edited), dict(self.vitals))
 
 
-@dataclass(frozen=True, slots=True)
-class SavedHoldings:
+class SavedHoldings(msgspec.Struct, frozen=True):
     """Holdings of one node as plain data.
 
     Attributes:

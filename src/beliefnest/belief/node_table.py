@@ -1,9 +1,9 @@
 """Arrays of the nodes of one forest for the kernel, which grow as nodes are added."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -27,8 +27,7 @@ _BY_SPOT = ("watched", "basis_at", "basis_source", "basis_current", "watch_misse
 """Names of the arrays with a column for each tracked cell."""
 
 
-@dataclass(frozen=True, slots=True)
-class SavedNode:
+class SavedNode(msgspec.Struct, frozen=True):
     """Rows of one node as native bytes, by their names in `arrays.Nodes`.
 
     `weighing` has the rows that exist only if hearers weigh claims. In a box with chunks, `blocks`
@@ -49,7 +48,7 @@ class SavedNode:
     basis_source: bytes
     basis_current: bytes
     edited_cells: list[int]
-    weighing: dict[str, bytes] = field(default_factory=dict)
+    weighing: dict[str, bytes] = msgspec.field(default_factory=dict)
 
 
 _TERRAINS = 16

@@ -1,11 +1,12 @@
 """Table of agents' poses with their details, which the belief kernel reads."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from beliefnest.belief.arrays import NOBODY, Poses
 from beliefnest.world.array_types import Ints
@@ -48,8 +49,7 @@ class Growing:
         return self._rows[: self._filled]
 
 
-@dataclass(frozen=True, slots=True)
-class PoseDetails:
+class PoseDetails(msgspec.Struct, frozen=True):
     """Footing and equipment of an agent in a pose, with facts that only the agent perceives.
 
     The attributes have the meaning of those of `AgentState`.
@@ -206,8 +206,7 @@ class PoseTable:
         return len(self._feet) - 1
 
 
-@dataclass(frozen=True, slots=True)
-class SavedPoses:
+class SavedPoses(msgspec.Struct, frozen=True):
     """Pose table as plain data: its columns as native bytes, and the details."""
 
     feet: bytes

@@ -1,8 +1,9 @@
 """The read-only view of one simulator's state that users, prompts and pictures get."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Protocol
+
+import msgspec
 
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.world.frames import BlockGrid
@@ -107,8 +108,7 @@ class State(Protocol):
         """The agent whose belief this is; None in the real world."""
 
 
-@dataclass(frozen=True)
-class FixedState:
+class FixedState(msgspec.Struct, frozen=True):
     """State whose parts are given. The attributes are those of `State`."""
 
     path: BeliefPath
@@ -122,7 +122,7 @@ class FixedState:
     chat: Sequence[tuple[int, str, str]]
     thoughts: Sequence[tuple[int, str, str]]
     addressees: Sequence[str | None]
-    signs: Mapping[Position, str] = field(default_factory=dict)
+    signs: Mapping[Position, str] = msgspec.field(default_factory=dict)
 
     @property
     def owner(self) -> str | None:

@@ -1,8 +1,9 @@
 """`beliefnest suite audit`: labels of a published set that do not follow from their stories."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from typing import Any
+
+from msgspec.structs import asdict
 
 from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import SuiteOptions

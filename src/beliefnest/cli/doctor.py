@@ -7,7 +7,9 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import closing
-from dataclasses import asdict, dataclass
+
+import msgspec
+from msgspec.structs import asdict
 
 from beliefnest.cli.machine_checks import MACHINE_CHECKS
 from beliefnest.cli.terminal_text import say
@@ -20,8 +22,7 @@ _HIGH = 200
 """Height y of the blocks that are built on a server, in the empty air."""
 
 
-@dataclass(frozen=True, slots=True)
-class CheckResult:
+class CheckResult(msgspec.Struct, frozen=True):
     """Result of one check.
 
     Attributes:

@@ -1,10 +1,12 @@
 """Editor of a scenario file: `beliefnest serve FILE --edit`."""
 
+import dataclasses
 import re
-from dataclasses import replace
 from pathlib import Path
 from threading import Lock
 from typing import Any
+
+from msgspec.structs import replace
 
 from beliefnest.cli.scenario_editing import drawn_starter, edited
 from beliefnest.errors import BeliefNestError, InputError
@@ -124,7 +126,9 @@ class FileEditor:
                 f"{_LARGEST:,}: edit the file as text, or a smaller box"
             )
         # Nobody joins here: people stand where the file puts them.
-        alone = replace(source, setting=replace(source.setting, people=frozenset()))
+        alone = dataclasses.replace(
+            source, setting=dataclasses.replace(source.setting, people=frozenset())
+        )
         with Nest.open(alone, world="scripted") as nest:
             about = About(title=source.name, labels=source.labels)
             scene = RunData(nest.reader, about, 0).update()

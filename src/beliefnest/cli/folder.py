@@ -4,10 +4,11 @@ import json
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain, count
 from pathlib import Path
+
+import msgspec
 
 from beliefnest.cli.report import report_json
 from beliefnest.errors import InputError
@@ -33,8 +34,7 @@ _MOST_NAMED = 10
 _OTHER = "name another folder"
 
 
-@dataclass(frozen=True, slots=True)
-class ConditionFolder:
+class ConditionFolder(msgspec.Struct, frozen=True):
     """Folder of one condition in a run folder."""
 
     path: Path
@@ -82,8 +82,7 @@ class ConditionFolder:
             replace_file(folder / f"reply-{place}.txt", reply.text)
 
 
-@dataclass(frozen=True, slots=True)
-class RunFolder:
+class RunFolder(msgspec.Struct, frozen=True):
     """Folder of a run: that of its results, with pictures, report and page."""
 
     path: Path

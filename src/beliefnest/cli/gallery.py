@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -55,8 +54,7 @@ class Gallery:
             self._last.result()
 
 
-@dataclass(frozen=True, slots=True)
-class RunResults(StudyFolder):
+class RunResults(StudyFolder, frozen=True):
     """Results of a run. A cell with a result is not played again, so that its picture is first.
 
     Attributes:

@@ -1,7 +1,9 @@
 """`beliefnest items`: the use of the command that options choose."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+
+import msgspec
+from msgspec.structs import fields
 
 from beliefnest.cli.functional import run_functional
 from beliefnest.cli.item_models import run_models, run_verify_results
@@ -10,8 +12,7 @@ from beliefnest.cli.options import ItemsOptions
 from beliefnest.errors import InputError
 
 
-@dataclass(frozen=True, slots=True)
-class ItemsUse:
+class ItemsUse(msgspec.Struct, frozen=True):
     """Use of the command.
 
     Attributes:

@@ -5,11 +5,11 @@ Commands get their options as one of these objects; `with_options` tells typer o
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_type_hints
 
+import msgspec
 import typer
 
 from beliefnest.errors import InputError
@@ -51,8 +51,7 @@ def joining_address(listen: str | None) -> str | None:
     return f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ModelOptions:
+class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
     """Options of requests to models; None: the default, or what a file says."""
 
     answer_seconds: Annotated[
@@ -90,8 +89,7 @@ class ModelOptions:
         return {name: value for name, value in values.items() if value is not None}
 
 
-@dataclass(frozen=True, slots=True)
-class RunOptions(ModelOptions):
+class RunOptions(ModelOptions, frozen=True):
     """Options of `beliefnest run`."""
 
     scenario: Annotated[str, typer.Argument(help="A built-in name, or a scenario file.")]
@@ -204,8 +202,7 @@ class RunOptions(ModelOptions):
         return ModelSettings.of_file(self.system, **self.requests)
 
 
-@dataclass(frozen=True, slots=True)
-class ShowOptions:
+class ShowOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest show`."""
 
     run: Annotated[Path, typer.Argument(help="Run folder, or the folder of one condition in it.")]
@@ -242,8 +239,7 @@ class ShowOptions:
         return {form: file for form, file in files.items() if file is not None}
 
 
-@dataclass(frozen=True, slots=True)
-class ServeOptions:
+class ServeOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest serve`."""
 
     what: Annotated[
@@ -265,8 +261,7 @@ class ServeOptions:
     depth: Annotated[int, typer.Option(help="Depth of the beliefs that are shown first.")] = 2
 
 
-@dataclass(frozen=True, slots=True)
-class CaptureOptions:
+class CaptureOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest capture`."""
 
     where: Annotated[
@@ -293,8 +288,7 @@ class CaptureOptions:
     ] = None
 
 
-@dataclass(frozen=True, slots=True)
-class ExportOptions:
+class ExportOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest export`."""
 
     run: Annotated[Path, typer.Argument(help="Run folder or run file.")]
@@ -306,8 +300,7 @@ class ExportOptions:
     ] = None
 
 
-@dataclass(frozen=True, slots=True)
-class SuiteOptions:
+class SuiteOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest suite`."""
 
     name: Annotated[
@@ -344,8 +337,7 @@ class SuiteOptions:
         return named[0]
 
 
-@dataclass(frozen=True, slots=True)
-class StudyOptions(ModelOptions):
+class StudyOptions(ModelOptions, frozen=True):
     """Options of `beliefnest study`."""
 
     study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
@@ -375,8 +367,7 @@ class StudyOptions(ModelOptions):
     json: Json = False
 
 
-@dataclass(frozen=True, slots=True)
-class ItemsOptions:
+class ItemsOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest items`."""
 
     study: Annotated[
@@ -444,8 +435,7 @@ class ItemsOptions:
         return self.out
 
 
-@dataclass(frozen=True, slots=True)
-class SearchItemsOptions:
+class SearchItemsOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest search-items`."""
 
     study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
@@ -468,8 +458,7 @@ class SearchItemsOptions:
     json: Json = False
 
 
-@dataclass(frozen=True, slots=True)
-class ParticipantsOptions:
+class ParticipantsOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest participants`."""
 
     study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
@@ -511,8 +500,7 @@ class ParticipantsOptions:
     json: Json = False
 
 
-@dataclass(frozen=True, slots=True)
-class StatsOptions:
+class StatsOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest stats`."""
 
     study: Annotated[Path, typer.Argument(help="Folder of a study.")]
@@ -561,8 +549,7 @@ class StatsOptions:
     json: Json = False
 
 
-@dataclass(frozen=True, slots=True)
-class PowerOptions:
+class PowerOptions(msgspec.Struct, frozen=True):
     """Options of `beliefnest power`."""
 
     study: Annotated[
@@ -587,8 +574,7 @@ class PowerOptions:
     json: Json = False
 
 
-@dataclass(frozen=True, slots=True)
-class PlayOptions(ModelOptions):
+class PlayOptions(ModelOptions, frozen=True):
     """Options of `beliefnest play`."""
 
     task: Annotated[

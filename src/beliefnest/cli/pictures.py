@@ -1,8 +1,9 @@
 """Pictures of conditions: the values to draw, read from an outcome."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
+
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import told_text
 from beliefnest.belief.view import State

@@ -2,11 +2,11 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from rich.console import Console
 from rich.markup import escape
 from rich.measure import Measurement
@@ -103,8 +103,7 @@ def count_outcomes(
     return {outcome: counts[outcome] for outcome in OUTCOMES}
 
 
-@dataclass(frozen=True, slots=True)
-class OutcomeRow:
+class OutcomeRow(msgspec.Struct, frozen=True):
     """Row of the table for one condition, read from its result as `outcome_json` wrote it.
 
     Attributes:

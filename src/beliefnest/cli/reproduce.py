@@ -4,9 +4,11 @@ import json
 import os
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+
+import msgspec
+from msgspec.structs import asdict
 
 from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.playing import playing
@@ -15,8 +17,7 @@ from beliefnest.files import os_errors_of, replace_file
 from beliefnest.studies.study import Study
 
 
-@dataclass(frozen=True, slots=True)
-class _Claim:
+class _Claim(msgspec.Struct, frozen=True):
     """Claim of the paper about one probe.
 
     Attributes:

@@ -1,16 +1,17 @@
 """`beliefnest run`: play each condition of a scenario, record it, judge it and draw it."""
 
+import dataclasses
 import json
 import math
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import replace
 from datetime import datetime
 from functools import partial
 from typing import Any, Literal
 
+from msgspec.structs import replace
 from rich.text import Text
 
 from beliefnest.cli.console import Printed, report_text, stdout
@@ -96,7 +97,7 @@ def _run_in(
     cells = plan_run_cells(scenarios, settings, folder.path, options.embody or (), gallery)
     # Each condition may name its own template.
     templates = {n: t for each in scenarios for n, t in each.templates.items()}
-    folder.begin(settings, replace(first, templates=templates), cells)
+    folder.begin(settings, dataclasses.replace(first, templates=templates), cells)
     results = RunResults(folder.path, RUN_KIND, gallery)
     terms = _terms(options, results)
     status: RunStatus = "failed"

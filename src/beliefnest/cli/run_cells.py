@@ -31,8 +31,7 @@ class RunKey(CellKey):
         return int(self.setting["seed"]) + self.repeat - 1
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunCell(Cell):
+class RunCell(Cell, frozen=True, kw_only=True):
     """One scenario under one condition with one model, once, with a folder and pictures.
 
     Attributes:

@@ -1,8 +1,9 @@
 """Execution of the actions of a step: skills tick by tick, or programs in any world."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.nest import Nest
@@ -18,8 +19,7 @@ from beliefnest.worlds.scripted.hand import Doing, Hand
 from beliefnest.worlds.scripted.skills import perform
 
 
-@dataclass(frozen=True, slots=True)
-class ActionState:
+class ActionState(msgspec.Struct, frozen=True):
     """State of an agent's latest action.
 
     Attributes:
@@ -31,8 +31,7 @@ class ActionState:
     busy: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class JointStep:
+class JointStep(msgspec.Struct, frozen=True):
     """Result of a joint step.
 
     Attributes:

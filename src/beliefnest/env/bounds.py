@@ -5,9 +5,9 @@ holder came to know things.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -42,8 +42,7 @@ _FARTHEST = 3.0e7
 """Distance of Minecraft's border from the origin, in blocks."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class ThingsLayout(Things):
+class ThingsLayout(Things, frozen=True, kw_only=True):
     """All things of an instance. Its user sees them all; each agent numbers those that it knows.
 
     Names are sorted, positions are in order.
@@ -59,8 +58,7 @@ class ThingsLayout(Things):
     places: tuple[Position, ...] = ()
 
 
-@dataclass(frozen=True)
-class SpaceBounds:
+class SpaceBounds(msgspec.Struct, frozen=True):
     """Sizes of the arrays, which are the same for all instances and agents.
 
     Attributes:

@@ -3,13 +3,13 @@
 import math
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
+from msgspec.structs import replace
 from pettingzoo import ParallelEnv
 
 from beliefnest.belief.plain import belief_json

@@ -7,11 +7,11 @@ is computed from the belief of their agent alone.
 import math
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from itertools import islice, product
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -44,8 +44,7 @@ _WALKS = ("goToPosition", "giveItemToOther")
 """Skills that end near their goal, not where a hand reaches it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Offer:
+class Offer(msgspec.Struct, frozen=True):
     """Action with a number of its own.
 
     Attributes:
@@ -61,8 +60,7 @@ class Offer:
     distance: int | None = None
 
 
-@dataclass(frozen=True)
-class ActorMind:
+class ActorMind(msgspec.Struct, frozen=True):
     """Knowledge of an agent about what it can do.
 
     Attributes:

@@ -1,8 +1,9 @@
 """Options of environments, and their checks."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Literal
+
+import msgspec
 
 from beliefnest.env.bounds import Phrases
 from beliefnest.errors import InputError, PathError
@@ -17,8 +18,7 @@ from beliefnest.worlds.names import check_world
 RENDER_MODES = ("human", "rgb_array")
 
 
-@dataclass(frozen=True)
-class EnvironmentOptions:
+class EnvironmentOptions(msgspec.Struct, frozen=True):
     """Options of an environment; the arguments of `parallel_env`, with the same names."""
 
     world: str = "scripted"
@@ -29,7 +29,7 @@ class EnvironmentOptions:
     phrases: Phrases | Sequence[str] = ()
     items: tuple[str, ...] = ()
     cells: tuple[Position, ...] = ()
-    sizes: Mapping[str, int] = field(default_factory=dict)
+    sizes: Mapping[str, int] = msgspec.field(default_factory=dict)
     reward: Callable[[Nest, str], float] | None = None
     ends: Callable[[Nest], bool] | None = None
     max_steps: int | None = None

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -26,8 +27,7 @@ KINDS = ("agents", "items", *PLACED)
 """Kinds of things that are numbered."""
 
 
-@dataclass(frozen=True)
-class Things:
+class Things(msgspec.Struct, frozen=True):
     """Things in order.
 
     Attributes:
@@ -129,7 +129,7 @@ class KnownOrder:
         declared: Things that the holder knows by the rules; they come first.
     """
 
-    declared: Things = Things()
+    declared: Things = field(default_factory=Things)
     _known: dict[str, dict[Any, int]] = field(init=False)
     _rows: dict[BeliefPath, int] = field(default_factory=dict, init=False)
     _seen: dict[BeliefPath, tuple[Terrain, int]] = field(default_factory=dict, init=False)

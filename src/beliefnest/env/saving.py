@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import msgspec
+
 from beliefnest.errors import InputError
 from beliefnest.skills.calls import Call
 
@@ -24,8 +26,7 @@ class Choice:
     fault: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class SavedEpisode:
+class SavedEpisode(msgspec.Struct, frozen=True):
     """Episode up to a joint step.
 
     Attributes:

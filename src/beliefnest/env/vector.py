@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
 from typing import Any
 
 import gymnasium
+import msgspec
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
@@ -24,8 +24,7 @@ _PATIENCE_S = 30.0
 """Seconds that processes have to close their worlds."""
 
 
-@dataclass(frozen=True, slots=True)
-class RowStep:
+class RowStep(msgspec.Struct, frozen=True):
     """Joint step of one agent of a copy.
 
     Attributes:

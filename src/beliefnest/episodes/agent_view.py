@@ -1,10 +1,12 @@
 """View of a policy: its agent's own belief, the beliefs below it, and the task."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
 from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.belief.view import State
 from beliefnest.episodes.considered import SearchTrace
@@ -28,8 +30,7 @@ GO_ON = "go on"
 """Text that a policy returns instead of a program to continue its last one, which was cut."""
 
 
-@dataclass(frozen=True, slots=True)
-class Brief:
+class Brief(msgspec.Struct, frozen=True):
     """Knowledge of one agent about a task; the task's description is not part of it.
 
     Attributes:
@@ -333,8 +334,7 @@ def _allow(spent: Spent) -> None:
     """Set no limit."""
 
 
-@dataclass(frozen=True, slots=True)
-class RoundFacts:
+class RoundFacts(msgspec.Struct, frozen=True):
     """Facts for templates besides the belief.
 
     Attributes:

@@ -1,8 +1,9 @@
 """Model of a policy whose spending an episode counts and limits."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from beliefnest.episodes.decided import Spent
 from beliefnest.errors import ModelError
@@ -11,8 +12,7 @@ if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
 
-@dataclass(frozen=True)
-class CountedModel:
+class CountedModel(msgspec.Struct, frozen=True):
     """Model wrapper that reports the usage of each answer, even of unusable ones.
 
     Attributes:

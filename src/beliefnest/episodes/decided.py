@@ -1,7 +1,6 @@
 """Decisions in parts of rounds and their results, as a run records them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 import msgspec
@@ -60,8 +59,7 @@ class Decision(msgspec.Struct, frozen=True):
     asked_again: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Ended:
+class Ended(msgspec.Struct, frozen=True):
     """End of an agent's latest program, as the agent itself perceives it.
 
     Attributes:
@@ -101,8 +99,7 @@ class RoundPart(msgspec.Struct, frozen=True):
         return self.reasons.get(agent) or self.decisions[agent].fault or message
 
 
-@dataclass(frozen=True, slots=True)
-class Failure:
+class Failure(msgspec.Struct, frozen=True):
     """Failed or missing program in an episode.
 
     Attributes:

@@ -13,8 +13,11 @@ are superfluous, as in every but-for test.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol, Self
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.episodes.agent_view import GO_ON, AgentView, Policy
 from beliefnest.episodes.decided import Decision, RoundPart
@@ -27,8 +30,7 @@ from beliefnest.world.event_kinds import EventKind
 _GAVE = EventKind.GIVE_ITEM_TO_OTHER
 
 
-@dataclass(frozen=True, slots=True)
-class HelpingAct:
+class HelpingAct(msgspec.Struct, frozen=True):
     """Program in which a player said or gave something.
 
     Attributes:
@@ -103,8 +105,7 @@ class Branching(Protocol):
         """Return the episode from a round on, on a new branch with other policies."""
 
 
-@dataclass(frozen=True)
-class _Without:
+class _Without(msgspec.Struct, frozen=True):
     """Policy that repeats earlier decisions, except in some rounds.
 
     Attributes:

@@ -7,11 +7,12 @@ of courses. An imagination contains nothing from the simulators above the believ
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.belief.chunk_pool import lines_of_sight
 from beliefnest.belief.columns import Columns

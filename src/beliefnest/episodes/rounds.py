@@ -21,8 +21,7 @@ _OF_ANSWERS = (NoUsableProgramError, UnusableAnswerError)
 """Errors about an answer that came: it is the model's result."""
 
 
-@dataclass(frozen=True)
-class ReplayedPolicy:
+class ReplayedPolicy(msgspec.Struct, frozen=True):
     """Policy that repeats recorded decisions, round by round."""
 
     decisions: Sequence[Decision]

@@ -1,7 +1,8 @@
 """Shares of a goal that several agents have: the conditions that each agent brought about."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.scenarios.goals import Goal, Progress
@@ -9,8 +10,7 @@ from beliefnest.scenarios.goals import Goal, Progress
 _NEVER = float("inf")
 
 
-@dataclass(frozen=True, slots=True)
-class Share:
+class Share(msgspec.Struct, frozen=True):
     """Share of a goal: the conditions for which one agent is responsible.
 
     Attributes:

@@ -1,12 +1,14 @@
 """Tasks: a scenario, the goals of its agents, and the rules of play."""
 
+import dataclasses
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path as FilePath
 from typing import Any, Self, cast
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.episodes.task_form import TaskForm
 from beliefnest.episodes.tasks import generated, is_task, task_names
@@ -107,7 +109,9 @@ class Task:
         if not has_instances(document):
             return cls.of(Scenario.varied(document, condition, parameters, change))
         values = drawn_instance(document, seed, parameters)
-        return replace(cls.of(Scenario.varied(document, condition, values, change)), seed=seed)
+        return dataclasses.replace(
+            cls.of(Scenario.varied(document, condition, values, change)), seed=seed
+        )
 
     @staticmethod
     def scenario_document(name_or_path: str) -> Document | None:
@@ -272,7 +276,7 @@ class Task:
                 for agent, possible in self.form.possible_goals.items()
             },
         )
-        return replace(self, form=form)
+        return dataclasses.replace(self, form=form)
 
     def _slower(self, goal: GoalEntry, pace: int) -> GoalEntry:
         if goal.ticks is None:

@@ -96,8 +96,7 @@ class FactEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_de
         return msgspec.convert, (msgspec.to_builtins(self), FactEntry)
 
 
-@dataclass(frozen=True, slots=True)
-class Pursuit:
+class Pursuit(msgspec.Struct, frozen=True):
     """Places and items that an agent can go to or take to bring a fact about.
 
     Attributes:
@@ -796,8 +795,7 @@ def middle_of(place: Point | Position) -> Point:
     return (x, y, z)
 
 
-@dataclass(frozen=True, slots=True)
-class StatedFact:
+class StatedFact(msgspec.Struct, frozen=True):
     """Fact that somebody wants, expects or observes, in reality or in a belief.
 
     Attributes:

@@ -1,7 +1,6 @@
 """Reading of facts: their entries, checked against the world that they are about."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 import msgspec
@@ -56,8 +55,7 @@ class FactScene(Protocol):
         """Refuse the text of an unknown block state."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlainScene:
+class PlainScene(msgspec.Struct, frozen=True):
     """Checks of facts that are given in code, of which only the agents and the box are known.
 
     Attributes:

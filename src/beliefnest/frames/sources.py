@@ -1,9 +1,10 @@
 """Sources of data frames: run files, folders of runs, folders of studies."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.studies.result import StudyResult
@@ -14,8 +15,7 @@ FrameSource = str | Path | StudyResult
 _RUN_FILE = "run.bn"
 
 
-@dataclass(frozen=True)
-class RecordedCell:
+class RecordedCell(msgspec.Struct, frozen=True):
     """One cell: a scenario under one condition, played once.
 
     Attributes:

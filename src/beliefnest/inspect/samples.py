@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import msgspec
+
 from beliefnest.llm.messages import Answer, Finish, Message, Sampling
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.content import Probe
@@ -35,8 +37,7 @@ def requests_of(scenario: Scenario) -> list[Probe]:
     return requests
 
 
-@dataclass(frozen=True)
-class JudgedOutcome:
+class JudgedOutcome(msgspec.Struct, frozen=True):
     """A judged answer.
 
     Attributes:

@@ -80,8 +80,7 @@ def tokens_of_free(usage: Usage) -> int:
     return usage.tokens if usage.cost == 0 else 0
 
 
-@dataclass(frozen=True)
-class MeteredModel(WrappedModel):
+class MeteredModel(WrappedModel, frozen=True):
     """Model wrapper that counts answers against a budget and stops when it is used up.
 
     Attributes:

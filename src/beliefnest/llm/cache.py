@@ -2,7 +2,6 @@
 
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -25,8 +24,7 @@ use cached answers, and ask for no others. `write`: always ask, and store the an
 neither use nor store answers."""
 
 
-@dataclass(frozen=True)
-class CachedModel(WrappedModel):
+class CachedModel(WrappedModel, frozen=True):
     """Model wrapper with a cache folder, one file per request.
 
     Attributes:

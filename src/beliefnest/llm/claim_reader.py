@@ -92,8 +92,7 @@ def claims_from_model(model: Model, sampling: Sampling | None = None) -> ClaimsF
     return ClaimsFromModel(model, sampling or Sampling())
 
 
-@dataclass(frozen=True)
-class _Strict(WrappedModel):
+class _Strict(WrappedModel, frozen=True):
     """Model wrapper that raises if an answer is not a list of claims about this world."""
 
     nameable: "Nameable"

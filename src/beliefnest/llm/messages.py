@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
+import msgspec
+
 from beliefnest.world.texts import visible
 
 Role = Literal["system", "user", "assistant"]
@@ -124,8 +126,7 @@ class Model(Protocol):
         """
 
 
-@dataclass(frozen=True)
-class WrappedModel:
+class WrappedModel(msgspec.Struct, frozen=True):
     """Part of a model that asks another one, under the same name.
 
     Attributes:

@@ -2,10 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, Self, get_args
 from urllib.parse import parse_qsl, urlencode
+
+import msgspec
+from msgspec.structs import fields
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
@@ -17,8 +20,7 @@ AskedForm = Literal["text", "structured"]
 _NUMBERS = ("answer_seconds", "first_token_seconds", "max_output_tokens", "retry_unread")
 
 
-@dataclass(frozen=True, slots=True)
-class ModelSettings:
+class ModelSettings(msgspec.Struct, frozen=True):
     """Settings of requests to models; all of them are part of the identity of a cell.
 
     Attributes:
@@ -120,8 +122,7 @@ def query_of(system: Path | None, values: Mapping[str, Any]) -> str:
     return urlencode(named | ({} if system is None else {"system": str(system)}), safe="/.")
 
 
-@dataclass(frozen=True)
-class WithSystem(WrappedModel):
+class WithSystem(WrappedModel, frozen=True):
     """Model wrapper that sends another system message.
 
     Attributes:

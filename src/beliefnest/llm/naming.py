@@ -5,6 +5,8 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
+
 _LONGEST = 1000
 """Greatest number of words of a sentence. Longer ones tell nothing clearly."""
 _QUOTES = str.maketrans(
@@ -118,8 +120,7 @@ _PAST = _words(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
+class Token(msgspec.Struct, frozen=True):
     """Word or punctuation mark of a sentence.
 
     Attributes:
@@ -191,8 +192,7 @@ def _stem(word: str) -> str:
     return word[:-1] if len(word) > 3 and word.endswith("s") and word[-2] not in "sui" else word
 
 
-@dataclass(frozen=True, slots=True)
-class _Mention:
+class _Mention(msgspec.Struct, frozen=True):
     options: frozenset[int]
     start: int
     end: int

@@ -3,7 +3,8 @@
 import random
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.llm.messages import Answer, ChoiceSampling, Message, Sampling
 
@@ -13,8 +14,7 @@ _NOT_KNOWN = "I do not know"
 _Choose = Callable[[Sequence[str], Sampling, str], str]
 
 
-@dataclass(frozen=True)
-class OptionModel:
+class OptionModel(msgspec.Struct, frozen=True):
     """Model that names one of the options of a question.
 
     It answers with the letter of an option in the prompt. If the prompt lists none, because it was

@@ -1,8 +1,9 @@
 """Models of the user's own, in a file, a module or an installed package."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import cast
+
+import msgspec
 
 from beliefnest.errors import BeliefNestError, ModelError
 from beliefnest.importing import installed_names, is_importable, is_object_name, made_object
@@ -13,8 +14,7 @@ MODEL_GROUP = "beliefnest.models"
 """Group of entry points, each of which names a class or function that makes a model."""
 
 
-@dataclass(frozen=True)
-class OwnModel:
+class OwnModel(msgspec.Struct, frozen=True):
     """Model of the user's own, under the name by which it is found.
 
     Attributes:

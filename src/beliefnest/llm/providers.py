@@ -7,14 +7,15 @@ from ipaddress import ip_address
 from typing import Literal
 from urllib.parse import unquote, urlsplit, urlunsplit
 
+import msgspec
+
 from beliefnest.errors import ModelError
 from beliefnest.llm.secrets import Secrets, secrets_in, without_password
 
 Protocol = Literal["openai", "compatible", "anthropic", "google"]
 
 
-@dataclass(frozen=True, slots=True)
-class Provider:
+class Provider(msgspec.Struct, frozen=True):
     """A provider of chat models.
 
     Attributes:

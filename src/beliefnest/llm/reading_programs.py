@@ -5,6 +5,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import msgspec
+
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Finish
 from beliefnest.llm.reading_answers import ReadingOutcome, ReadOutcome, is_refusal, withheld
@@ -68,8 +70,7 @@ class ProgramReading(ReadingOutcome):
     refused: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class _Block:
+class _Block(msgspec.Struct, frozen=True):
     """Fenced block.
 
     Attributes:

@@ -70,8 +70,7 @@ class ReplayModel:
         return left.popleft().answer
 
 
-@dataclass(frozen=True)
-class FileRecordingModel(WrappedModel):
+class FileRecordingModel(WrappedModel, frozen=True):
     """Model wrapper that appends exchanges to a file, one JSON object per line."""
 
     file: Path

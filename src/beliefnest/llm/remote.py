@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, NoReturn
 
+import msgspec
+
 from beliefnest.errors import BeliefNestError, ModelError
 from beliefnest.llm.connecting import ByteCount, TooManyBytesError, bounded_client
 from beliefnest.llm.failures import (
@@ -71,8 +73,7 @@ class AnswerLimits:
     silent_bytes: int = 2**26
 
 
-@dataclass(frozen=True)
-class RemoteModel:
+class RemoteModel(msgspec.Struct, frozen=True):
     """A model of a provider; it connects only when it is asked.
 
     Attributes:

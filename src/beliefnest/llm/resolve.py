@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import msgspec
+
 from beliefnest.errors import InputError, ModelError, UnknownNameError
 from beliefnest.llm.budget import MeteredModel, RunSpending
 from beliefnest.llm.cache import CachedModel, CacheMode
@@ -98,8 +100,7 @@ def resolve_model(
     return RemoteModel(endpoint(PROVIDERS[kind], environment), rest, limits or AnswerLimits())
 
 
-@dataclass(frozen=True)
-class _Unreachable:
+class _Unreachable(msgspec.Struct, frozen=True):
     """Model without key or address, which fails when a request is not in the cache."""
 
     name: str

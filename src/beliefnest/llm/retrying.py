@@ -51,8 +51,7 @@ class RetryPolicy:
         return max(backoff, retry_after or 0.0)
 
 
-@dataclass(frozen=True)
-class RetryingModel(WrappedModel):
+class RetryingModel(WrappedModel, frozen=True):
     """Model that repeats requests after rate limits, server faults and lost connections.
 
     Attributes:

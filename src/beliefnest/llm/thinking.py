@@ -1,7 +1,8 @@
 """Separation of a model's thinking from what it says, for the marks of all known models."""
 
 import re
-from dataclasses import dataclass
+
+import msgspec
 
 _NAMES = "think|thinking|thought|thoughts|reasoning|reflection|scratchpad|analysis|seed:think"
 _TAG = re.compile(
@@ -31,8 +32,7 @@ _TURN_END = re.compile(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Said:
+class Said(msgspec.Struct, frozen=True):
     """Text that a model said, without its thinking and without the marks of turns.
 
     Attributes:

@@ -8,9 +8,10 @@ the doubted elements and the cells behind blocks whose shapes are in doubt.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -35,8 +36,7 @@ _IN_CHUNK = np.stack(np.unravel_index(np.arange(VOLUME), (SIDE, SIDE, SIDE)), ax
 _NO_CELLS = np.empty((0, 3), dtype=np.int64)
 
 
-@dataclass(frozen=True, eq=False)
-class AlternativeWorld:
+class AlternativeWorld(msgspec.Struct, frozen=True, eq=False):
     """One alternative at one moment.
 
     Attributes:

@@ -1,14 +1,13 @@
 """Evidence: what an observer perceived of an agent, moment by moment."""
 
-from dataclasses import dataclass
+import msgspec
 
 from beliefnest.minds.alternatives import AgentPose
 from beliefnest.minds.surroundings import Surroundings
 from beliefnest.world.values import Position
 
 
-@dataclass(frozen=True, eq=False)
-class EvidenceMoment:
+class EvidenceMoment(msgspec.Struct, frozen=True, eq=False):
     """One tick at which something changed in the observer's node, or its first one.
 
     Sets of alternatives are numbers, as in `stage`.

@@ -1,14 +1,14 @@
 """Findings of an inference: effects of evidence, impossible evidence, sampled courses."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.world.values import Position
 
 
-@dataclass(frozen=True, slots=True)
-class Impossible:
+class Impossible(msgspec.Struct, frozen=True):
     """The first piece of evidence that no hypothesis explains.
 
     Attributes:
@@ -25,8 +25,7 @@ class Impossible:
         return f"tick {self.tick}: the agent {self.text}, which no hypothesis explains: {self.why}"
 
 
-@dataclass(frozen=True)
-class SampledPath:
+class SampledPath(msgspec.Struct, frozen=True):
     """A course that agrees with the evidence.
 
     Attributes:
@@ -38,8 +37,7 @@ class SampledPath:
     cells: Mapping[int, Position]
 
 
-@dataclass(frozen=True)
-class EvidenceEffect:
+class EvidenceEffect(msgspec.Struct, frozen=True):
     """Effect of one piece of evidence on the marginals.
 
     Attributes:

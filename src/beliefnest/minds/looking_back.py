@@ -5,9 +5,9 @@ Works on the layers that a `Tracker` keeps (forward filtering, backward smoothin
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.minds.hypotheses import Action, Hypotheses, Layer, WalkState
 from beliefnest.minds.planner import log_sum

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -25,8 +26,7 @@ MOST_ALTERNATIVES = 62
 _SUM_SLACK = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class PossibleGoal:
+class PossibleGoal(msgspec.Struct, frozen=True):
     """Thing that an agent may want to reach: exactly one field is set.
 
     Attributes:
@@ -40,8 +40,7 @@ class PossibleGoal:
     item: str | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Alternative:
+class Alternative(msgspec.Struct, frozen=True, eq=False):
     """Possible version of a world: the elements that it sets.
 
     Attributes:
@@ -52,9 +51,9 @@ class Alternative:
     """
 
     name: str
-    blocks: Mapping[Position, str] = field(default_factory=dict)
-    containers: Mapping[Position, Items] = field(default_factory=dict)
-    agents: Mapping[str, Point] = field(default_factory=dict)
+    blocks: Mapping[Position, str] = msgspec.field(default_factory=dict)
+    containers: Mapping[Position, Items] = msgspec.field(default_factory=dict)
+    agents: Mapping[str, Point] = msgspec.field(default_factory=dict)
 
     @property
     def elements(self) -> frozenset[tuple[str, object]]:

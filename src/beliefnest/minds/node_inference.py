@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -64,8 +65,7 @@ def infer_in(
     return work.inferred(model, since, step_ticks, ended=ended, smooth=smooth)
 
 
-@dataclass(frozen=True, eq=False)
-class ModelStart:
+class ModelStart(msgspec.Struct, frozen=True, eq=False):
     """Start of a model at one tick of a node.
 
     Attributes:

@@ -7,7 +7,8 @@ going in or out, an agent moves in sight. The element is then the same in all al
 import hashlib
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.belief.grounds import AgentBelief, ContainerBelief, PerceivedEvent
 from beliefnest.belief.holdings import changed_items
@@ -24,8 +25,7 @@ _NEAR = 0.5
 """Distance from which two places count as different, in blocks."""
 
 
-@dataclass(frozen=True)
-class _Held:
+class _Held(msgspec.Struct, frozen=True):
     """Doubted elements in the state of the node."""
 
     blocks: Mapping[Position, int]

@@ -1,7 +1,10 @@
 """Course of an agent as an observer perceived it, read from one node and its timeline."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent
@@ -20,8 +23,7 @@ from beliefnest.world.paths import BeliefPath, normalised, path_text
 from beliefnest.world.values import Position, block_at
 
 
-@dataclass(frozen=True, eq=False)
-class CourseQuestion:
+class CourseQuestion(msgspec.Struct, frozen=True, eq=False):
     """Request to read one agent's course from one node.
 
     Attributes:

@@ -9,9 +9,9 @@ a smaller set. If only one alternative is believed, values do not depend on the 
 
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -31,8 +31,7 @@ _ROOM = 256 * 2**20
 """Limit of the values of all planners together, in bytes."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlanRules:
+class PlanRules(msgspec.Struct, frozen=True):
     """Costs and discount of a model."""
 
     discount: float
@@ -46,8 +45,7 @@ class PlanRules:
         return self.act_cost / self.discount
 
 
-@dataclass(frozen=True, eq=False)
-class _Values:
+class _Values(msgspec.Struct, frozen=True, eq=False):
     """Values of one knowledge, stored once for all hypotheses with equal values.
 
     Attributes:
@@ -68,8 +66,7 @@ class _Values:
         return values
 
 
-@dataclass(frozen=True, eq=False)
-class _Kinds:
+class _Kinds(msgspec.Struct, frozen=True, eq=False):
     """Hypotheses that have the same values with one knowledge.
 
     The utility of a goal has no effect if no believed alternative contains the goal. Credences

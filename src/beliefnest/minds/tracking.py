@@ -8,10 +8,12 @@ Weights are logarithms of the probability of all evidence so far; -inf means imp
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import ceil
 
+import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.minds.evidence import EvidenceMoment
 from beliefnest.minds.hypotheses import (
@@ -51,8 +53,7 @@ _HIDES = "the observer would have seen it wherever it can be by then"
 _APPEARS = "no way leads there on which the observer would not have seen it"
 
 
-@dataclass(frozen=True, eq=False)
-class FilterStep:
+class FilterStep(msgspec.Struct, frozen=True, eq=False):
     """The filter after a piece of evidence.
 
     Attributes:

@@ -2,9 +2,9 @@
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from random import Random
 
+import msgspec
 import numpy as np
 
 from beliefnest.minds.alternatives import AgentPose, AlternativeWorld, AlternativeWorlds
@@ -18,8 +18,7 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position
 
 
-@dataclass(frozen=True, slots=True)
-class Draw:
+class Draw(msgspec.Struct, frozen=True):
     """Drawn hypothesis, as indices.
 
     Attributes:
@@ -35,8 +34,7 @@ class Draw:
     actual: int
 
 
-@dataclass(frozen=True, slots=True)
-class WalkChanges:
+class WalkChanges(msgspec.Struct, frozen=True):
     """Changes in a history since its start.
 
     Attributes:
@@ -48,22 +46,19 @@ class WalkChanges:
     moved: tuple[tuple[Position, str, int], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class WalkStep:
+class WalkStep(msgspec.Struct, frozen=True):
     """Step into a cell. Into its own cell: the agent stays or is blocked."""
 
     cell: Position
 
 
-@dataclass(frozen=True, slots=True)
-class Open:
+class Open(msgspec.Struct, frozen=True):
     """A look into a container."""
 
     place: Position
 
 
-@dataclass(frozen=True, slots=True)
-class WalkAct:
+class WalkAct(msgspec.Struct, frozen=True):
     """Act on a goal, which ends the course, and the item that it takes, if any."""
 
     item: str | None

@@ -1,7 +1,8 @@
 """Bar chart of a posterior at one tick."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width
 from beliefnest.pictures.marks import XY, Lines, Rectangle, Text
@@ -9,8 +10,7 @@ from beliefnest.pictures.palette import INK, PAPER, QUIET, mix
 from beliefnest.pictures.panel import PanelBlock, paragraph
 
 
-@dataclass(frozen=True)
-class BarGroup:
+class BarGroup(msgspec.Struct, frozen=True):
     """Bars on one scale.
 
     Attributes:
@@ -30,8 +30,7 @@ class BarGroup:
     is_share: bool = False
 
 
-@dataclass(frozen=True)
-class BarChart:
+class BarChart(msgspec.Struct, frozen=True):
     """A posterior at one tick.
 
     Attributes:

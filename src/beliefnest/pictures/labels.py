@@ -1,7 +1,8 @@
 """Placement of names on a plan: beside their icons, or elsewhere with a line to the icon."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.pictures.lettering import ASCENT, DESCENT
 from beliefnest.pictures.marks import XY, Bounds
@@ -13,8 +14,7 @@ _MANY = 1000
 _TRIES = 4
 
 
-@dataclass(frozen=True, slots=True)
-class Label:
+class Label(msgspec.Struct, frozen=True):
     """A name with further lines, before it has a place.
 
     Attributes:
@@ -30,8 +30,7 @@ class Label:
     size: tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class PlacedLabel:
+class PlacedLabel(msgspec.Struct, frozen=True):
     """A placed label.
 
     Attributes:

@@ -6,8 +6,10 @@ may lie anywhere.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from typing import Any, Literal
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.pictures.lettering import ASCENT, DESCENT, text_width
 
@@ -20,8 +22,7 @@ MarkRole = Literal["area", "line", "icon", "part", "text", "card"]
 alone."""
 
 
-@dataclass(frozen=True, slots=True)
-class Rectangle:
+class Rectangle(msgspec.Struct, frozen=True):
     """A rectangle with its upper left corner at `x`, `y`."""
 
     x: float
@@ -41,8 +42,7 @@ class Rectangle:
         return self.x, self.y, self.x + self.width, self.y + self.height
 
 
-@dataclass(frozen=True, slots=True)
-class Circle:
+class Circle(msgspec.Struct, frozen=True):
     """A circle around `x`, `y`."""
 
     x: float
@@ -61,8 +61,7 @@ class Circle:
         return self.x - r, self.y - r, self.x + r, self.y + r
 
 
-@dataclass(frozen=True, slots=True)
-class Polygon:
+class Polygon(msgspec.Struct, frozen=True):
     """A filled polygon, or a line through points if `closed` is False."""
 
     points: tuple[XY, ...]
@@ -80,8 +79,7 @@ class Polygon:
         return min(xs), min(ys), max(xs), max(ys)
 
 
-@dataclass(frozen=True, slots=True)
-class Lines:
+class Lines(msgspec.Struct, frozen=True):
     """Many straight segments of one style."""
 
     segments: tuple[tuple[XY, XY], ...]
@@ -96,8 +94,7 @@ class Lines:
         return min(xs), min(ys), max(xs), max(ys)
 
 
-@dataclass(frozen=True, slots=True)
-class Text:
+class Text(msgspec.Struct, frozen=True):
     """A line of text; `y` is its base line, `x` its beginning, middle or end."""
 
     x: float
@@ -128,8 +125,7 @@ class Text:
         return self.left, top, self.left + self.width, bottom
 
 
-@dataclass(frozen=True, slots=True)
-class Pixels:
+class Pixels(msgspec.Struct, frozen=True):
     """A rectangle of equal coloured fields with its upper left corner at `x`, `y`.
 
     Attributes:
@@ -164,8 +160,7 @@ class Pixels:
 DrawnMark = Rectangle | Circle | Polygon | Lines | Text | Pixels
 
 
-@dataclass(frozen=True, slots=True)
-class Drawing:
+class Drawing(msgspec.Struct, frozen=True):
     """Marks on a page, the lowest first.
 
     Attributes:
@@ -200,7 +195,7 @@ _LENGTHS = ("x", "y", "width", "height", "thick", "radius", "dash", "size")
 
 def _scaled(mark: DrawnMark, factor: float) -> DrawnMark:
     changed: dict[str, Any] = {
-        name: getattr(mark, name) * factor for name in mark.__dataclass_fields__ if name in _LENGTHS
+        name: getattr(mark, name) * factor for name in mark.__struct_fields__ if name in _LENGTHS
     }
     if isinstance(mark, Polygon):
         changed["points"] = tuple((x * factor, y * factor) for x, y in mark.points)

@@ -1,7 +1,10 @@
 """Picture of a run: for each condition the plan of the world, beliefs, and predictions."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.pictures import icons
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure, columns_for
@@ -22,8 +25,7 @@ _INSET = 5.0
 _BETWEEN = 4.0
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(msgspec.Struct, frozen=True):
     """A line of a card.
 
     Attributes:
@@ -35,8 +37,7 @@ class Note:
     false: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Card:
+class Card(msgspec.Struct, frozen=True):
     """Belief of one simulator, or a prediction from it.
 
     Attributes:
@@ -56,8 +57,7 @@ class Card:
     prediction: bool = False
 
 
-@dataclass(frozen=True)
-class ConditionPicture:
+class ConditionPicture(msgspec.Struct, frozen=True):
     """Content of the picture of one condition.
 
     Attributes:

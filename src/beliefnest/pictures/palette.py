@@ -8,9 +8,10 @@ apart. Colour is never the only distinction.
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import cycle
+
+import msgspec
 
 INK = "#2b2a33"
 PAPER = "#fcfbf8"
@@ -52,8 +53,7 @@ _NAMED: Mapping[str, str] = {
 _COLOUR_WORD = re.compile(rf"\b({'|'.join(_NAMED)})\b")
 
 
-@dataclass(frozen=True, slots=True)
-class AgentLook:
+class AgentLook(msgspec.Struct, frozen=True):
     """Look of one agent in all views.
 
     Attributes:
@@ -83,8 +83,7 @@ class Mark(StrEnum):
     FALSE = "false"
 
 
-@dataclass(frozen=True, slots=True)
-class MarkLook:
+class MarkLook(msgspec.Struct, frozen=True):
     """Look of a mark.
 
     Attributes:

@@ -1,7 +1,9 @@
 """Panel of a figure: title, plan, and in the margin everything that the plan cannot show."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import seen_text, told_text
 from beliefnest.pictures import icons

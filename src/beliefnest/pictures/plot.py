@@ -2,7 +2,8 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.pictures import icons
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure
@@ -22,8 +23,7 @@ _ABOVE = 5.5
 """Room above a row for balloons, in points."""
 
 
-@dataclass(frozen=True, slots=True)
-class Band:
+class Band(msgspec.Struct, frozen=True):
     """A value that was held for some time.
 
     Attributes:
@@ -39,8 +39,7 @@ class Band:
     false: bool
 
 
-@dataclass(frozen=True, slots=True)
-class PlotRow:
+class PlotRow(msgspec.Struct, frozen=True):
     """Values that one simulator held.
 
     Attributes:
@@ -54,8 +53,7 @@ class PlotRow:
     told: tuple["NotedClaim", ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class NotedClaim:
+class NotedClaim(msgspec.Struct, frozen=True):
     """A claim that was heard.
 
     Attributes:

@@ -2,7 +2,8 @@
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.pictures.bars import number_text
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure
@@ -21,8 +22,7 @@ _DASHES = (0.0, 4.0, 1.4, 7.0)
 _MOST_KEYS = 8
 
 
-@dataclass(frozen=True)
-class PosteriorPanel:
+class PosteriorPanel(msgspec.Struct, frozen=True):
     """Curves or shares over time.
 
     Attributes:
@@ -95,8 +95,7 @@ def _draw(
     return Drawing(width, axis.draw(bottom + 2, marks) + MARGIN, tuple(marks), title)
 
 
-@dataclass(frozen=True, slots=True)
-class _Look:
+class _Look(msgspec.Struct, frozen=True):
     colour: str
     dash: float
 
@@ -124,8 +123,7 @@ def _key_text(panel: PosteriorPanel, name: str) -> str:
     return f"{name}: {value}"
 
 
-@dataclass(frozen=True)
-class _Panel:
+class _Panel(msgspec.Struct, frozen=True):
     """A panel with its place on the page."""
 
     panel: PosteriorPanel

@@ -1,8 +1,8 @@
 """Ground of a wide world from above, one value for each column."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
@@ -37,8 +37,7 @@ ReliefWindow = tuple[tuple[int, int], tuple[int, int]]
 """Lowest and highest x and z of a part of a box."""
 
 
-@dataclass(frozen=True)
-class Relief:
+class Relief(msgspec.Struct, frozen=True):
     """Highest known blocks of columns, up to some height.
 
     Attributes:

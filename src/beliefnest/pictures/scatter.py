@@ -3,7 +3,8 @@
 import itertools
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure, columns_for
 from beliefnest.pictures.lettering import ASCENT, text_width
@@ -22,8 +23,7 @@ _TICKS = 7
 _PAD = 0.06
 
 
-@dataclass(frozen=True, slots=True)
-class Dot:
+class Dot(msgspec.Struct, frozen=True):
     """A dot.
 
     Attributes:
@@ -39,8 +39,7 @@ class Dot:
     error: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class ScatterPanel:
+class ScatterPanel(msgspec.Struct, frozen=True):
     """A panel.
 
     Attributes:
@@ -54,8 +53,7 @@ class ScatterPanel:
     points: Sequence[Dot]
 
 
-@dataclass(frozen=True, slots=True)
-class ScatterRow:
+class ScatterRow(msgspec.Struct, frozen=True):
     """Panels with the same axes.
 
     Attributes:

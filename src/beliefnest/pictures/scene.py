@@ -3,11 +3,12 @@
 import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
 from functools import cache
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, Source
 from beliefnest.belief.view import State
@@ -42,8 +43,7 @@ _FLAT = 3
 """Difference in height up to which the things of a wide world belong to one storey."""
 
 
-@dataclass(frozen=True, slots=True)
-class Wrong:
+class Wrong(msgspec.Struct, frozen=True):
     """One difference between two simulators.
 
     Attributes:
@@ -59,8 +59,7 @@ class Wrong:
     is_owned: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class PlanColumn:
+class PlanColumn(msgspec.Struct, frozen=True):
     """One column of the plan.
 
     Attributes:
@@ -74,8 +73,7 @@ class PlanColumn:
     wrong: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Device:
+class Device(msgspec.Struct, frozen=True):
     """A block that agents use: a door, a lever, a button, a crafting table.
 
     Attributes:
@@ -102,8 +100,7 @@ class Device:
     source: Source | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Store:
+class Store(msgspec.Struct, frozen=True):
     """A container.
 
     Attributes:
@@ -143,8 +140,7 @@ class Store:
         return contents_words(self.items, complete=self.complete, ones=False)
 
 
-@dataclass(frozen=True, slots=True)
-class DrawnAgent:
+class DrawnAgent(msgspec.Struct, frozen=True):
     """An agent in a scene.
 
     Attributes:
@@ -177,8 +173,7 @@ class DrawnAgent:
     source: Source | None = None
 
 
-@dataclass(frozen=True)
-class AgentSight:
+class AgentSight(msgspec.Struct, frozen=True):
     """Blocks that an agent sees in the simulator.
 
     Attributes:
@@ -190,8 +185,7 @@ class AgentSight:
     seen: npt.NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class Scene:
+class Scene(msgspec.Struct, frozen=True):
     """One simulator at one tick, at one height.
 
     Attributes:
@@ -230,7 +224,7 @@ class Scene:
     wrong: int
     against: str
     note: str = ""
-    heat: Mapping[tuple[int, int], float] = field(default_factory=dict)
+    heat: Mapping[tuple[int, int], float] = msgspec.field(default_factory=dict)
     heat_words: str = ""
     relief: Relief | None = None
 
@@ -321,8 +315,7 @@ def read_scene(
     )
 
 
-@dataclass(frozen=True)
-class _Ground:
+class _Ground(msgspec.Struct, frozen=True):
     """Blocks of a plan.
 
     Attributes:

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import Source
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.pictures.figure import TEXT_SIZE
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width
@@ -13,8 +14,7 @@ from beliefnest.pictures.palette import INK, QUIET
 _ACT = TEXT_SIZE * 0.95
 
 
-@dataclass(frozen=True, slots=True)
-class NotedAct:
+class NotedAct(msgspec.Struct, frozen=True):
     """An act that mattered.
 
     Attributes:
@@ -26,8 +26,7 @@ class NotedAct:
     words: str
 
 
-@dataclass(frozen=True, slots=True)
-class TimeAxis:
+class TimeAxis(msgspec.Struct, frozen=True):
     """Scale from ticks to the width of a plot.
 
     Attributes:

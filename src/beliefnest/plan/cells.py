@@ -4,8 +4,11 @@ import hashlib
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+
+import msgspec
+from msgspec.structs import replace
 
 if TYPE_CHECKING:
     from beliefnest.plan.terms import PlayStage
@@ -92,8 +95,7 @@ def alike(key: Key, seeds: Collection[str]) -> str:
     return digest({k: v for k, v in key.content_json().items() if k not in seeds})[:16]
 
 
-@dataclass(frozen=True, slots=True)
-class Invalid:
+class Invalid(msgspec.Struct, frozen=True):
     """Combination that makes no valid scenario or episode.
 
     Attributes:
@@ -109,8 +111,7 @@ class Invalid:
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class Plan(Generic[C]):
+class Plan(msgspec.Struct, Generic[C], frozen=True):
     """Cells of a study in the order of its table, and its invalid combinations."""
 
     cells: tuple[C, ...]

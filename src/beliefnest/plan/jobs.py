@@ -5,9 +5,10 @@ import warnings
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
+
+import msgspec
 
 from beliefnest.errors import BodyError, InputError, MissingExtraError, UnknownNameError
 from beliefnest.llm.failures import UnavailableModelError
@@ -48,8 +49,7 @@ class CellFolder(Protocol):
         """Note the wall time of a cell."""
 
 
-@dataclass(frozen=True, slots=True)
-class StudyProgress:
+class StudyProgress(msgspec.Struct, frozen=True):
     """Progress of a study.
 
     Attributes:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.messages import Model, Sampling
 from beliefnest.llm.model_settings import ModelSettings
@@ -65,8 +67,7 @@ class CellKey(Key):
         return cell_seed(self.scenario, dict(self.variation), self.repeat, self.setting["seed"])
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(msgspec.Struct, frozen=True):
     """Variation of a scenario under one condition, to be played once with one model.
 
     Attributes:

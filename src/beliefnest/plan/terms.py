@@ -2,8 +2,9 @@
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
+
+import msgspec
 
 from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.cache import CacheMode
@@ -16,8 +17,7 @@ from beliefnest.prompts import Renderer
 from beliefnest.worlds.by_name import Worlds
 
 
-@dataclass(frozen=True, slots=True)
-class Terms:
+class Terms(msgspec.Struct, frozen=True):
     """Settings that all cells of a plan share.
 
     Attributes:
@@ -38,7 +38,7 @@ class Terms:
     environment: Mapping[str, str] | None = None
     cache_mode: CacheMode = "read"
     record: Path | None = None
-    models: Mapping[str, Model] = field(default_factory=dict)
+    models: Mapping[str, Model] = msgspec.field(default_factory=dict)
 
     @property
     def surroundings(self) -> Mapping[str, str]:
@@ -87,8 +87,7 @@ class Terms:
         return self.runs / f"{cell}.bn"
 
 
-@dataclass(frozen=True, slots=True)
-class PlayStage:
+class PlayStage(msgspec.Struct, frozen=True):
     """PlayStage on which a worker plays its cells.
 
     Attributes:

@@ -5,8 +5,9 @@ import time
 import warnings
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass
 from typing import Any, Protocol
+
+import msgspec
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.llm.failures import UnavailableModelError
@@ -18,8 +19,7 @@ from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.protocol import World
 
 
-@dataclass(frozen=True, slots=True)
-class CellResult:
+class CellResult(msgspec.Struct, frozen=True):
     """Result of a cell.
 
     Attributes:

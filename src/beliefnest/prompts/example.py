@@ -1,9 +1,9 @@
 """A small hand-made belief for the filter reference and for trying out filters."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
+import msgspec
 import numpy as np
 
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
@@ -25,8 +25,7 @@ _LEVER: Position = (0, -51, -4)
 _SIGN: Position = (4, -51, -4)
 
 
-@dataclass(frozen=True)
-class ExampleBlocks:
+class ExampleBlocks(msgspec.Struct, frozen=True):
     """Believed blocks given one by one; the rest of the box is unknown.
 
     Attributes:

@@ -1,7 +1,8 @@
 """View of one simulator: the only object that reaches templates, stories and pictures of a mind."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.belief.view import State
 from beliefnest.prompts.observations import Observation
@@ -9,8 +10,7 @@ from beliefnest.world.paths import path_text
 from beliefnest.world.values import Position
 
 
-@dataclass(frozen=True, slots=True)
-class ToldMind:
+class ToldMind(msgspec.Struct, frozen=True):
     """Observations of a simulator's owner, and the names that it has for things.
 
     Attributes:

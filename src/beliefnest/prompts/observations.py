@@ -1,14 +1,14 @@
 """Observations of a mind in the order of time: what a story is told from."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.world.values import Items, Point, Position
 
 
-@dataclass(frozen=True, slots=True)
-class Outset:
+class Outset(msgspec.Struct, frozen=True):
     """Agents and possessions that are perceived at the first tick.
 
     Attributes:
@@ -24,11 +24,10 @@ class Outset:
     owner: str | None
     feet: Mapping[str, Point]
     has: Mapping[str, Items]
-    known: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    known: Mapping[str, tuple[str, ...]] = msgspec.field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class Assumed:
+class Assumed(msgspec.Struct, frozen=True):
     """Contents that the observer took for granted from the start."""
 
     tick: int
@@ -36,8 +35,7 @@ class Assumed:
     items: Items
 
 
-@dataclass(frozen=True, slots=True)
-class SightChange:
+class SightChange(msgspec.Struct, frozen=True):
     """Change of what a viewer can see.
 
     Attributes:
@@ -54,16 +52,15 @@ class SightChange:
 
     tick: int
     viewer: str
-    agents: Mapping[str, Point] = field(default_factory=dict)
+    agents: Mapping[str, Point] = msgspec.field(default_factory=dict)
     places: tuple[Position, ...] = ()
-    lost_agents: Mapping[str, Point] = field(default_factory=dict)
+    lost_agents: Mapping[str, Point] = msgspec.field(default_factory=dict)
     lost_places: tuple[Position, ...] = ()
-    kinds: Mapping[Position, str] = field(default_factory=dict)
+    kinds: Mapping[Position, str] = msgspec.field(default_factory=dict)
     labelled: tuple[Position, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
+class Found(msgspec.Struct, frozen=True):
     """Complete contents that the observer perceives and could not have known before."""
 
     tick: int
@@ -71,8 +68,7 @@ class Found:
     items: Items
 
 
-@dataclass(frozen=True, slots=True)
-class Read:
+class Read(msgspec.Struct, frozen=True):
     """Text of a sign that the observer sees and has not seen before; empty: it is blank."""
 
     tick: int
@@ -80,8 +76,7 @@ class Read:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Lying:
+class Lying(msgspec.Struct, frozen=True):
     """Items that the observer sees lying on the floor for the first time."""
 
     tick: int
@@ -90,8 +85,7 @@ class Lying:
     position: Point
 
 
-@dataclass(frozen=True, slots=True)
-class Happened:
+class Happened(msgspec.Struct, frozen=True):
     """Event that the observer perceives.
 
     Attributes:

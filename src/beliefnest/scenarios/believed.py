@@ -3,7 +3,6 @@
 import difflib
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 import msgspec
@@ -64,8 +63,7 @@ class BelievedEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Found:
+class _Found(msgspec.Struct, frozen=True):
     """One right answer.
 
     Attributes:
@@ -81,8 +79,7 @@ class _Found:
     written: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Believed:
+class Believed(msgspec.Struct, frozen=True):
     """Right answer that is read from a simulator after the script.
 
     Attributes:

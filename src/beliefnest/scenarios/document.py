@@ -6,9 +6,11 @@ in the file.
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError, ScenarioError
 from beliefnest.world.texts import quoted, shortened
@@ -29,8 +31,7 @@ KeyPath = tuple[str | int, ...]
 """Keys and list indices from the top of a document to a value."""
 
 
-@dataclass(frozen=True, slots=True)
-class YamlNode:
+class YamlNode(msgspec.Struct, frozen=True):
     """Value of a document with its line.
 
     Attributes:
@@ -45,8 +46,7 @@ class YamlNode:
     origin: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Document:
+class Document(msgspec.Struct, frozen=True):
     """Scenario as written.
 
     Attributes:
@@ -63,7 +63,7 @@ class Document:
     root: YamlNode
     folder: Path
     text: str = ""
-    templates: Mapping[str, str] = field(default_factory=dict)
+    templates: Mapping[str, str] = msgspec.field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     def fault(self, path: KeyPath, message: str) -> ScenarioError:

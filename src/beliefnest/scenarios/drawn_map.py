@@ -6,11 +6,11 @@ place where they are drawn, so that errors name row and column.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError, ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, wrapped
@@ -61,8 +61,7 @@ def with_map(document: Document) -> Document:
     return _Drawing(document, check_written(document)).resolved()
 
 
-@dataclass(frozen=True, slots=True)
-class _Floor:
+class _Floor(msgspec.Struct, frozen=True):
     """Floor of a map.
 
     Attributes:
@@ -80,8 +79,7 @@ class _Floor:
     height: int
 
 
-@dataclass(frozen=True, slots=True)
-class _Cell:
+class _Cell(msgspec.Struct, frozen=True):
     """Character on a map.
 
     Attributes:

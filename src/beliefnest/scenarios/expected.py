@@ -7,7 +7,6 @@ is. To add a kind, add its keys to `ExpectEntry`, and its class to `KINDS` in `e
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
 import msgspec
@@ -246,8 +245,7 @@ class Expected(ABC):
         return f"Judged by {self.ground}; that is {judged.words}{reason}."
 
 
-@dataclass(frozen=True, slots=True)
-class Judgement:
+class Judgement(msgspec.Struct, frozen=True):
     """Judgement of one expectation of a probe.
 
     Attributes:

@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import msgspec
+
 from beliefnest.facts.kinds import StatedFact
 from beliefnest.facts.states import Look
 from beliefnest.world.paths import BeliefPath
 
 
-@dataclass(frozen=True, slots=True)
-class Goal:
+class Goal(msgspec.Struct, frozen=True):
     """Goal of an agent or of a task.
 
     Attributes:

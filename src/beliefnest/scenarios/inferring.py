@@ -1,8 +1,9 @@
 """Inference in scenarios: a probe's `infer`, and what is reported of its result."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from beliefnest.errors import InputError, PathError, ScenarioError, TickError
 
@@ -12,8 +13,7 @@ if TYPE_CHECKING:
     from beliefnest.nest.face.shown import ShownSimulator
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Inferring:
+class Inferring(msgspec.Struct, frozen=True, eq=False):
     """Inference of a probe.
 
     Attributes:
@@ -46,8 +46,7 @@ class Inferring:
             raise ScenarioError(f"{self.where}: {error}") from None
 
 
-@dataclass(frozen=True, slots=True)
-class Inferred:
+class Inferred(msgspec.Struct, frozen=True):
     """The result of a probe that infers.
 
     Attributes:

@@ -10,7 +10,6 @@ import math
 import random
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -78,8 +77,7 @@ def drawn_instance(document: Document, seed: int, chosen: Mapping[str, object]) 
     )
 
 
-@dataclass(frozen=True)
-class _Drawing:
+class _Drawing(msgspec.Struct, frozen=True):
     """Rules of a document for its instances.
 
     Attributes:

@@ -1,7 +1,8 @@
 """Loading of scenarios: find the document, apply the condition, and check the content."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.build import build_scenario

@@ -1,7 +1,8 @@
 """Names of places of a scenario, for people."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.nest.past.place_names import object_names
 from beliefnest.nest.past.setting import Setting
@@ -12,8 +13,7 @@ from beliefnest.world.values import Point, Position
 from beliefnest.world.words import point_text
 
 
-@dataclass(frozen=True, slots=True)
-class Naming:
+class Naming(msgspec.Struct, frozen=True):
     """Names of things in the text of a probe.
 
     Attributes:

@@ -1,8 +1,10 @@
 """Older spellings of facts in scenario files, rewritten into today's (docs/facts.md)."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, TypeVar
+
+from msgspec.structs import replace
 
 from beliefnest.scenarios.document import Document, YamlNode
 

@@ -1,7 +1,8 @@
 """Outcomes of scenarios, probes and expectations."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
@@ -17,8 +18,7 @@ from beliefnest.world.values import Point, Position
 from beliefnest.worlds.protocol import Fault, ProgramResult
 
 
-@dataclass(frozen=True, slots=True)
-class Reply:
+class Reply(msgspec.Struct, frozen=True):
     """Reply of a model to a question.
 
     Attributes:
@@ -46,8 +46,7 @@ class Reply:
     form: AnswerForm = "text"
 
 
-@dataclass(frozen=True, slots=True)
-class ProbeOutcome:
+class ProbeOutcome(msgspec.Struct, frozen=True):
     """Outcome of a probe: the model's answers, and what its program did.
 
     Attributes:
@@ -141,8 +140,7 @@ class ProbeOutcome:
         return 0 if self.trial is None else self.trial.result.ticks
 
 
-@dataclass(frozen=True, slots=True)
-class ExpectationOutcome:
+class ExpectationOutcome(msgspec.Struct, frozen=True):
     """Outcome of an expectation about a simulator.
 
     Attributes:
@@ -159,8 +157,7 @@ class ExpectationOutcome:
         return self.why_not is None
 
 
-@dataclass(frozen=True)
-class Outcome:
+class Outcome(msgspec.Struct, frozen=True):
     """Outcome of a scenario under one condition.
 
     Attributes:
@@ -183,7 +180,7 @@ class Outcome:
     beliefs: Mapping[str, State]
     expectations: tuple[ExpectationOutcome, ...]
     probes: tuple[ProbeOutcome, ...]
-    reading: Usage = field(default_factory=Usage)
+    reading: Usage = msgspec.field(default_factory=Usage)
 
     def __repr__(self) -> str:
         number = self.scenario.condition

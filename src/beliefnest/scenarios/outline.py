@@ -1,16 +1,15 @@
 """Outlines of the built-in scenarios, read in half the time of whole documents."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+import msgspec
 from ruamel.yaml import YAML
 from ruamel.yaml.nodes import MappingNode, Node
 
 from beliefnest.scenarios.sources import builtin_file
 
 
-@dataclass(frozen=True, slots=True)
-class Outline:
+class Outline(msgspec.Struct, frozen=True):
     """Description of a scenario, read without building its scene.
 
     Attributes:

@@ -2,7 +2,9 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
+
+import msgspec
 
 from beliefnest.belief.view import State
 from beliefnest.errors import ModelError, TemplateError
@@ -27,8 +29,7 @@ from beliefnest.scenarios.trial import Trial
 from beliefnest.skills import SkillDetail, skills_at
 
 
-@dataclass(frozen=True, slots=True)
-class Asking:
+class Asking(msgspec.Struct, frozen=True):
     """Options of requests to a model.
 
     Attributes:
@@ -39,12 +40,11 @@ class Asking:
     """
 
     attempts: int = 3
-    sampling: Sampling = field(default_factory=Sampling)
-    settings: ModelSettings = field(default_factory=ModelSettings)
+    sampling: Sampling = msgspec.field(default_factory=Sampling)
+    settings: ModelSettings = msgspec.field(default_factory=ModelSettings)
 
 
-@dataclass(frozen=True, slots=True)
-class _Programs:
+class _Programs(msgspec.Struct, frozen=True):
     """Result of asking for a program.
 
     Attributes:
@@ -61,7 +61,7 @@ class _Programs:
     verdicts: tuple[Judgement, ...]
     fault: str = ""
     outcome: str = ""
-    usage: Usage = field(default_factory=Usage)
+    usage: Usage = msgspec.field(default_factory=Usage)
 
     @property
     def last(self) -> Round | None:

@@ -3,7 +3,8 @@
 import re
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from beliefnest.errors import ScenarioError
 from beliefnest.nest.face.nest import Nest

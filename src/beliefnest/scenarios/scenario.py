@@ -1,9 +1,11 @@
 """Scenarios: events in the real world, and probes and expectations about beliefs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Self
+
+from msgspec.structs import replace
 
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, wrapped

@@ -1,8 +1,9 @@
 """Sources of scenarios: the documents that are built in, and those in files."""
 
-from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
+
+from msgspec.structs import replace
 
 from beliefnest.errors import UnknownNameError
 from beliefnest.scenarios.document import Document

@@ -1,7 +1,8 @@
 """Trial: the run of one program of a probe, as it is judged; Python functions that judge it."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
@@ -21,8 +22,7 @@ def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:
     )
 
 
-@dataclass(frozen=True)
-class Trial:
+class Trial(msgspec.Struct, frozen=True):
     """Run of a program.
 
     Attributes:
@@ -68,8 +68,7 @@ class Trial:
         return self.used[0] if self.used else self.walked[-1] if self.walked else None
 
 
-@dataclass(frozen=True, slots=True)
-class NamedFunction:
+class NamedFunction(msgspec.Struct, frozen=True):
     """Function of a module, which is imported when it is first needed.
 
     Attributes:

@@ -2,9 +2,10 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
+
+import msgspec
 
 from beliefnest.skills.manifests import Parameter, Skill, skills
 
@@ -34,8 +35,7 @@ def callables() -> Mapping[str, Skill]:
     return {each.name: each for each in (walking, OPEN_CONTAINER, *others)}
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(msgspec.Struct, frozen=True):
     """A skill with its arguments, as plain values.
 
     Attributes:

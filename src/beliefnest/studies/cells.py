@@ -1,9 +1,11 @@
 """Plan of a study of scenarios: one cell for each combination."""
 
+import dataclasses
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
+
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.plan.cells import Invalid, Plan
@@ -207,11 +209,12 @@ def _with_template(
     if template.name not in BUILT_IN_TEMPLATES:
         text = variation.template(text, document)
     probes = tuple(
-        replace(probe, template=text, template_name=template.name) for probe in scenario.probes
+        dataclasses.replace(probe, template=text, template_name=template.name)
+        for probe in scenario.probes
     )
     for probe in probes:
         probe.check_template()
-    return replace(scenario, probes=probes)
+    return dataclasses.replace(scenario, probes=probes)
 
 
 def planned_cell(key: CellKey, document: Document, template: Template | None) -> Cell:
@@ -226,9 +229,11 @@ def planned_cell(key: CellKey, document: Document, template: Template | None) ->
     variation = Variation(key.variation)
     scenario = variation.scenario(document, key.condition)
     if template is None:
-        return Cell(replace(key, content=content_of(document.text, scenario, None)), scenario)
+        return Cell(
+            dataclasses.replace(key, content=content_of(document.text, scenario, None)), scenario
+        )
     asked = _with_template(scenario, template, variation, document)
-    return Cell(replace(key, content=content_of(document.text, asked, template)), asked)
+    return Cell(dataclasses.replace(key, content=content_of(document.text, asked, template)), asked)
 
 
 def _cells(

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -22,8 +21,7 @@ _TRIPLE = re.compile(rf"\(\s*({_NUMBER}),\s*({_NUMBER}),\s*({_NUMBER})\s*\)")
 _DIRECTIONAL = re.compile(r"\b(north|south|east|west|left|right)\b", re.IGNORECASE)
 
 
-@dataclass(frozen=True, slots=True)
-class MovedBySymmetry:
+class MovedBySymmetry(msgspec.Struct, frozen=True):
     """Change that moves and turns everything by a symmetry.
 
     Attributes:
@@ -130,8 +128,7 @@ def _triple(value: Any) -> tuple[Any, Any, Any]:
     return x, y, z
 
 
-@dataclass(frozen=True, slots=True)
-class Renamed:
+class Renamed(msgspec.Struct, frozen=True):
     """Change that renames agents and items everywhere, including the texts of tasks.
 
     Attributes:

@@ -4,8 +4,9 @@ import itertools
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.judging import OUTCOMES
@@ -151,8 +152,7 @@ def _means(rows: Mapping[_Origin, Row], means: Mapping[str, bool]) -> dict[str, 
     return columns
 
 
-@dataclass(frozen=True, slots=True)
-class Pairs:
+class Pairs(msgspec.Struct, frozen=True):
     """Two levels of one column, compared on rows that are the same otherwise.
 
     Attributes:

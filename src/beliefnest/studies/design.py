@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError
 from beliefnest.llm.budget import RunLimits
@@ -37,8 +38,7 @@ Constraint = str | Callable[[Mapping[str, Any]], bool]
 """Condition on a variation's values: an expression, or a function of them."""
 
 
-@dataclass(frozen=True)
-class Design:
+class Design(msgspec.Struct, frozen=True):
     """Design of a study of scenarios.
 
     Attributes:
@@ -67,17 +67,17 @@ class Design:
     templates: tuple[Template, ...] = ()
     repeats: int = 1
     seed: int = 0
-    variations: Mapping[str, Sequence[Any]] | int = field(default_factory=dict)
+    variations: Mapping[str, Sequence[Any]] | int = msgspec.field(default_factory=dict)
     conditions: tuple[int, ...] | None = None
     constraints: tuple[Constraint, ...] = ()
     world: str = "embedded"
     attempts: int = 3
     temperature: float | None = 0.0
-    limits: RunLimits = field(default_factory=RunLimits)
+    limits: RunLimits = msgspec.field(default_factory=RunLimits)
     claims_from: str | None = None
-    settings: ModelSettings = field(default_factory=ModelSettings)
+    settings: ModelSettings = msgspec.field(default_factory=ModelSettings)
     design: Allocation = "crossed"
-    labels: Mapping[str, str] = field(default_factory=dict)
+    labels: Mapping[str, str] = msgspec.field(default_factory=dict)
     balance: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

@@ -3,8 +3,11 @@
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.choosing import check_played
@@ -77,8 +80,7 @@ class EpisodeKey(Key):
         return self.instance if self.repeat == 1 else cell_seed(self.instance, self.repeat)
 
 
-@dataclass(frozen=True)
-class EpisodeCell:
+class EpisodeCell(msgspec.Struct, frozen=True):
     """Instance of a task, to be played once by a player.
 
     Attributes:
@@ -202,8 +204,7 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
     return Plan(tuple(cells), tuple(each for each in planned if isinstance(each, Invalid)))
 
 
-@dataclass(frozen=True, slots=True)
-class _Place:
+class _Place(msgspec.Struct, frozen=True):
     """Place of cells in a study, without player, instance and repeat.
 
     Attributes:

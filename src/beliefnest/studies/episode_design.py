@@ -1,8 +1,9 @@
 """Checked design of a study of episodes: the values that it combines."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, Literal
+
+import msgspec
 
 from beliefnest.episodes.policies import with_query
 from beliefnest.llm.budget import RunLimits
@@ -22,8 +23,7 @@ Policies = str | Mapping[str, str | Mapping[str, str]]
 """A policy of all players, policies by agent, or a name for the table with policies by agent."""
 
 
-@dataclass(frozen=True, slots=True)
-class Player:
+class Player(msgspec.Struct, frozen=True):
     """Player of a study: a policy at an order.
 
     Attributes:
@@ -48,8 +48,7 @@ _ORDERED = ("search", "infer")
 """Policies that play at each of the orders of a study."""
 
 
-@dataclass(frozen=True)
-class EpisodeDesign:
+class EpisodeDesign(msgspec.Struct, frozen=True):
     """Design of a study of episodes.
 
     Attributes:
@@ -74,12 +73,12 @@ class EpisodeDesign:
     orders: tuple[Order, ...] = ()
     seeds: tuple[int, ...] = (0,)
     repeats: int = 1
-    variations: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    variations: Mapping[str, Sequence[Any]] = msgspec.field(default_factory=dict)
     conditions: tuple[int, ...] | None = None
     world: str = "scripted"
     help: bool = False
     query: str = ""
-    limits: RunLimits = field(default_factory=RunLimits)
+    limits: RunLimits = msgspec.field(default_factory=RunLimits)
 
     def __post_init__(self) -> None:
         for name in ("tasks", "policies", "models", "orders", "seeds"):

@@ -8,9 +8,9 @@ in `fault` and has no other content.
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Literal
 
+import msgspec
 import numpy as np
 
 from beliefnest.errors import MissingExtraError
@@ -32,8 +32,7 @@ _ERRORS = (np.linalg.LinAlgError, ArithmeticError, ValueError)
 """Errors that numerical libraries raise if the data do not determine a model."""
 
 
-@dataclass(frozen=True, slots=True)
-class Fit:
+class Fit(msgspec.Struct, frozen=True):
     """Estimates of one model.
 
     Attributes:
@@ -285,8 +284,7 @@ def _weights(residuals: Floats, groups: Any) -> Floats:
     return np.asarray(1 / (1 + (sizes[groups] - 1) * min(1.0, max(0.0, shared))))
 
 
-@dataclass(frozen=True, slots=True)
-class _Penalised:
+class _Penalised(msgspec.Struct, frozen=True):
     """Penalised likelihood of a logistic regression.
 
     Attributes:

@@ -2,7 +2,8 @@
 
 import hashlib
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.importing import is_object_name, text_of_object
@@ -10,8 +11,7 @@ from beliefnest.scenarios.document import YamlNode
 from beliefnest.world.texts import shortened
 
 
-@dataclass(frozen=True, slots=True)
-class Code:
+class Code(msgspec.Struct, frozen=True):
     """Code that would run.
 
     Attributes:

@@ -9,8 +9,10 @@ with a model, and variations exchange their rotations until lists are as balance
 import warnings
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import combinations
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.nest import Nest
@@ -36,8 +38,7 @@ class ListsWarning(UserWarning):
     """Warning that lists of a Latin square differ in their right answers."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Square:
+class _Square(msgspec.Struct, frozen=True):
     """Cells of one scenario: facts on right answers, and lists.
 
     Attributes:

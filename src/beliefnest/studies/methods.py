@@ -4,8 +4,9 @@ import hashlib
 import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular
@@ -25,8 +26,7 @@ MethodsForm = Literal["markdown", "latex"]
 FORMATS: tuple[MethodsForm, ...] = get_args(MethodsForm)
 
 
-@dataclass(frozen=True, slots=True)
-class ModelFacts:
+class ModelFacts(msgspec.Struct, frozen=True):
     """Model of a study.
 
     Attributes:
@@ -42,8 +42,7 @@ class ModelFacts:
     undated: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class PeopleFacts:
+class PeopleFacts(msgspec.Struct, frozen=True):
     """People who answered on a page for participants.
 
     Attributes:
@@ -61,11 +60,10 @@ class PeopleFacts:
     rows: int
     shown: Sequence[str]
     dates: tuple[str, str] | None
-    sessions: Mapping[str, Any] = field(default_factory=dict)
+    sessions: Mapping[str, Any] = msgspec.field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class RunFacts:
+class RunFacts(msgspec.Struct, frozen=True):
     """Recorded facts about a study or a run.
 
     Attributes:
@@ -111,10 +109,10 @@ class RunFacts:
     tokens: int
     cost: float
     unpriced: int
-    excluded: Mapping[str, int] = field(default_factory=dict)
+    excluded: Mapping[str, int] = msgspec.field(default_factory=dict)
     computed: int = 0
-    not_answered: Mapping[str, int] = field(default_factory=dict)
-    rounds_not_answered: Mapping[str, int] = field(default_factory=dict)
+    not_answered: Mapping[str, int] = msgspec.field(default_factory=dict)
+    rounds_not_answered: Mapping[str, int] = msgspec.field(default_factory=dict)
     asked_again: int = 0
     intervals: Sequence[str] = ()
     people: Sequence[PeopleFacts] = ()

@@ -3,9 +3,10 @@
 import csv
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
+
+import msgspec
 
 from beliefnest.errors import MissingExtraError
 from beliefnest.files import replace_file, replacing
@@ -17,8 +18,7 @@ if TYPE_CHECKING:  # pandas and pyarrow are optional, and imported when a table 
     import pyarrow
 
 
-@dataclass(frozen=True, slots=True)
-class Typed:
+class Typed(msgspec.Struct, frozen=True):
     """Values of a column.
 
     Attributes:

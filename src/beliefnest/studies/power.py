@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any, Protocol
 
+import msgspec
 import numpy as np
 
 from beliefnest.errors import InputError
@@ -40,8 +41,7 @@ class VariationSource(Protocol):
         """Draw variations."""
 
 
-@dataclass(frozen=True, slots=True)
-class AssumedRates:
+class AssumedRates(msgspec.Struct, frozen=True):
     """Source of variations with an assumed accuracy, difference and correlation.
 
     Rows are right by a probit model with a normal random intercept for each variation: a row is
@@ -99,8 +99,7 @@ class AssumedRates:
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class Resampled:
+class Resampled(msgspec.Struct, frozen=True):
     """Source that draws recorded variations with replacement.
 
     Attributes:
@@ -219,8 +218,7 @@ def power_rows(
     return [{"of": name, **power.plain()} for name, power in simulated]
 
 
-@dataclass(frozen=True, slots=True)
-class _Study:
+class _Study(msgspec.Struct, frozen=True):
     """Analysis of one simulated study: interval of the accuracy, and of the difference with p."""
 
     accuracy: tuple[float, float] | None

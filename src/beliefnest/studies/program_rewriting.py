@@ -6,8 +6,9 @@ directions, or that hold positions in another form, are refused.
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.skills.javascript import nodes_below, parsed
@@ -25,8 +26,7 @@ _DIRECTED = frozenset(("exploreUntil",))
 """Skills whose vector argument is a direction."""
 
 
-@dataclass(frozen=True, slots=True)
-class Rewriting:
+class Rewriting(msgspec.Struct, frozen=True):
     """Functions that rewrite the parts of a program.
 
     Attributes:

@@ -5,8 +5,9 @@ import math
 import random
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.scenarios.document import Document, plain
@@ -105,8 +106,7 @@ def _is_kept(document: Document, variation: Variation, keeps: Callable[[Variatio
     return broken_constraint(document, variation.parameters) is None and keeps(variation)
 
 
-@dataclass(frozen=True)
-class _Drawing:
+class _Drawing(msgspec.Struct, frozen=True):
     """Space of variations of a scenario.
 
     Attributes:

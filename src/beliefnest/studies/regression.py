@@ -3,9 +3,9 @@
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
+import msgspec
 import numpy as np
 
 from beliefnest.errors import InputError
@@ -38,8 +38,7 @@ _COUNTED = ("variations", "judged", "right", "accuracy", "low", "high", "interva
 """Columns of counts, after those of the effects."""
 
 
-@dataclass(frozen=True, slots=True)
-class Term:
+class Term(msgspec.Struct, frozen=True):
     """Coefficient of a regression.
 
     Attributes:
@@ -77,8 +76,7 @@ class Term:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class Substitute:
+class Substitute(msgspec.Struct, frozen=True):
     """Sound estimates of another method, in place of a fit that is not sound.
 
     Attributes:
@@ -90,8 +88,7 @@ class Substitute:
     terms: tuple[Term, ...]
 
 
-@dataclass(frozen=True)
-class Regression:
+class Regression(msgspec.Struct, frozen=True):
     """Fitted regression of right answers.
 
     Attributes:

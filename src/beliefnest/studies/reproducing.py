@@ -1,12 +1,13 @@
 """Playing the cells of a recorded study again, from its folder alone and without any model."""
 
+import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.episodes.policies import is_own_policy, policy_of_file
 from beliefnest.episodes.task import Task
@@ -36,8 +37,7 @@ from beliefnest.world.texts import quoted
 from beliefnest.worlds.minecraft.launching import ahead
 
 
-@dataclass(frozen=True, slots=True)
-class Reproduction:
+class Reproduction(msgspec.Struct, frozen=True):
     """Comparison of a recorded study, or run, with the same played again.
 
     Attributes:
@@ -180,8 +180,7 @@ def _differing_cells(
         yield from pairs or differing_contents(recorded.folder.cell(name), failed, where, ("run",))
 
 
-@dataclass(frozen=True)
-class _Inputs:
+class _Inputs(msgspec.Struct, frozen=True):
     """Inputs in the folder of a study.
 
     Attributes:
@@ -251,7 +250,7 @@ class _Inputs:
                 f"{self.index.scenarios[recorded.scenario]}, or a template, has changed since the "
                 "cell was played"
             )
-        own = replace(recorded, model=self._here(recorded.model))
+        own = dataclasses.replace(recorded, model=self._here(recorded.model))
         return replace(cell, key=own, label=label)
 
     def _template(self, key: CellKey) -> Template | None:
@@ -277,7 +276,7 @@ class _Inputs:
         document = None if is_task(source) else Task.scenario_document(source)
         task = task_of_cell(recorded, source, document)
         policies = {agent: self._here(name) for agent, name in recorded.policies.items()}
-        return EpisodeCell(replace(recorded, policies=policies), task, draws=True)
+        return EpisodeCell(dataclasses.replace(recorded, policies=policies), task, draws=True)
 
     def code(self) -> Iterator[Code]:
         """Yield the Python code that playing the cells runs."""

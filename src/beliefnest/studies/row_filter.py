@@ -2,8 +2,9 @@
 
 import ast
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.world.words import nearest_or_all
@@ -23,8 +24,7 @@ _HOW = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class RowFilter:
+class RowFilter(msgspec.Struct, frozen=True):
     """Condition that a row holds or does not.
 
     The grammar is a part of Python's: `==`, `!=`, `<`, `<=`, `>`, `>=`, `in`, `not in` between

@@ -5,10 +5,10 @@ kind. A key that this module does not list is refused, so that no position is le
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.facts.kinds import FactEntry
@@ -37,23 +37,20 @@ class SceneChange(Protocol):
         """
 
 
-@dataclass(frozen=True, slots=True)
-class _Each:
+class _Each(msgspec.Struct, frozen=True):
     """List of values of one shape, or a single such value."""
 
     shape: Any
 
 
-@dataclass(frozen=True, slots=True)
-class _Map:
+class _Map(msgspec.Struct, frozen=True):
     """Mapping with keys of one kind and values of one shape."""
 
     key: SceneKind
     shape: Any
 
 
-@dataclass(frozen=True, slots=True)
-class _OrMapping:
+class _OrMapping(msgspec.Struct, frozen=True):
     """Value of one shape, or a mapping of another shape."""
 
     shape: Any

@@ -6,8 +6,9 @@ import itertools
 import re
 from collections import Counter
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import os_errors_of, read_regular
@@ -33,8 +34,7 @@ _DIGITS = 15
 """Digits that numbers of a spreadsheet keep."""
 
 
-@dataclass(frozen=True, slots=True)
-class Sheet:
+class Sheet(msgspec.Struct, frozen=True):
     """Content of a CSV file.
 
     Attributes:

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
 from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
+from msgspec.structs import asdict
 
 from beliefnest.errors import InputError, ModelError, UnknownNameError
 from beliefnest.llm.model_settings import AskedForm, ModelSettings

@@ -3,7 +3,6 @@
 import json
 import shutil
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -32,8 +31,7 @@ _AGAIN = "delete it to run it again"
 _PLAN_AGAIN = "delete it and run the study again, which keeps the cells that have ended"
 
 
-@dataclass(frozen=True, slots=True)
-class PersonCell:
+class PersonCell(msgspec.Struct, frozen=True):
     """Cell that a participant answered.
 
     Attributes:
@@ -54,8 +52,7 @@ _OTHER_FOLDERS = {
 """Files that folders of other commands have, and what to say of these folders."""
 
 
-@dataclass(frozen=True, slots=True)
-class StudyFolder:
+class StudyFolder(msgspec.Struct, frozen=True):
     """Folder of a study, a suite or a run.
 
     It holds `study.json` (the latest plan), `cells/` (the result of each finished cell),

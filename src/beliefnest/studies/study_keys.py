@@ -1,11 +1,11 @@
 """Keys of a study, as its file and `Study` take them, and the design that they describe."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import fields
 
 from beliefnest.errors import InputError
 from beliefnest.llm.model_settings import ModelSettings, query_of

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.registry import Registry, parse_state
@@ -17,8 +18,7 @@ _SIGN_STEPS = 16
 """Number of directions of a standing sign or head, clockwise from south."""
 
 
-@dataclass(frozen=True, slots=True)
-class Symmetry:
+class Symmetry(msgspec.Struct, frozen=True):
     """Symmetry of a scene, seen from above: first a mirroring of east and west, then a turn.
 
     Attributes:
@@ -138,8 +138,7 @@ def symmetry_named(name: object) -> Symmetry:
     raise InputError(f"there is no symmetry {quoted(name)}; there are {names}")
 
 
-@dataclass(frozen=True, slots=True)
-class Placing:
+class Placing(msgspec.Struct, frozen=True):
     """Map of positions in a box under a symmetry; the new box has the same lowest corner.
 
     Attributes:
@@ -175,8 +174,7 @@ class Placing:
         return i + low[0], y, k + low[2]
 
 
-@dataclass(frozen=True, slots=True)
-class _Moved:
+class _Moved(msgspec.Struct, frozen=True):
     """Blocks of a terrain at their new positions, computed in slabs."""
 
     symmetry: Symmetry

@@ -2,8 +2,9 @@
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Any, Literal
+
+import msgspec
 
 from beliefnest.llm.failures import NOT_ASKED
 from beliefnest.plan.scenario_cells import LABEL, LIST
@@ -24,8 +25,7 @@ ColumnType = Literal["string", "int64", "float64", "bool"]
 """Type of a column in data frames and Parquet files."""
 
 
-@dataclass(frozen=True, slots=True)
-class RowSource:
+class RowSource(msgspec.Struct, frozen=True):
     """Plain values from which one row is read.
 
     Attributes:
@@ -39,8 +39,7 @@ class RowSource:
     result: Mapping[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
-class Column:
+class Column(msgspec.Struct, frozen=True):
     """Column of a table.
 
     Attributes:
@@ -58,8 +57,7 @@ class Column:
     identifies: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
+class Table(msgspec.Struct, frozen=True):
     """Form of a table. The columns of variations stand between `first` and `columns`.
 
     Attributes:
@@ -83,8 +81,8 @@ class Table:
     further_groups: tuple[str, ...]
     compared: tuple[str, ...]
     apart: tuple[str, ...]
-    same: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    means: Mapping[str, bool] = field(default_factory=dict)
+    same: Mapping[str, tuple[str, ...]] = msgspec.field(default_factory=dict)
+    means: Mapping[str, bool] = msgspec.field(default_factory=dict)
 
     def kinds(self, varied: Iterable[str]) -> dict[str, ColumnType | None]:
         """Return the type of each column, by name; None: a column of variations."""
@@ -142,8 +140,7 @@ class Table:
             }
 
 
-@dataclass(frozen=True, slots=True)
-class CellKind:
+class CellKind(msgspec.Struct, frozen=True):
     """Kind of cells.
 
     Attributes:

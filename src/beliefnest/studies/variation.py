@@ -4,8 +4,9 @@ import itertools
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document, plain
@@ -24,15 +25,14 @@ CHANGES = ("symmetry", "agents", "items")
 """Keys of `variations` that are not parameters: a symmetry, new names of agents and of items."""
 
 
-@dataclass(frozen=True)
-class Variation:
+class Variation(msgspec.Struct, frozen=True):
     """Variation of a scenario.
 
     Attributes:
         values: Values of parameters and of `CHANGES`, by name; all others are as written.
     """
 
-    values: Mapping[str, Any] = field(default_factory=dict)
+    values: Mapping[str, Any] = msgspec.field(default_factory=dict)
 
     @property
     def parameters(self) -> dict[str, Any]:

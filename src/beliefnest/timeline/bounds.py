@@ -5,7 +5,8 @@ value is checked once, where bytes become values. Nothing after that checks it a
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.errors import BeliefNestError, StoreError
 from beliefnest.timeline.events import event_from
@@ -27,8 +28,7 @@ from beliefnest.world.texts import quoted
 from beliefnest.world.values import AgentState, Box, Event, Position
 
 
-@dataclass(frozen=True)
-class RunBounds:
+class RunBounds(msgspec.Struct, frozen=True):
     """Box, agents and game to which all entries of a run belong.
 
     Attributes:

@@ -1,17 +1,19 @@
 """Comparison of two histories: the first entry where a replay differs from the record."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from itertools import zip_longest
 from typing import Any
+
+import msgspec
+from msgspec import structs
 
 from beliefnest.timeline.journal import Entry
 
 _ABSENT = object()
 
 
-@dataclass(frozen=True, slots=True)
-class EntryDifference:
+class EntryDifference(msgspec.Struct, frozen=True):
     """First difference between two histories.
 
     Attributes:
@@ -60,6 +62,8 @@ def _differences(place: str, old: Any, new: Any) -> Iterator[tuple[str, Any, Any
 
 def _parts(value: Any) -> Mapping[Any, Any] | None:
     """Return the parts of a value by name; None if the value has no parts."""
+    if isinstance(value, msgspec.Struct):
+        return structs.asdict(value)
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: getattr(value, field.name) for field in fields(value)}
     if isinstance(value, Mapping):

@@ -4,10 +4,10 @@ All functions are pure. docs/export.md describes the columns for readers.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
+import msgspec
 import numpy as np
 
 from beliefnest.timeline.journal import Edit, Entry, TimelineInfo, TimelineKey
@@ -27,8 +27,7 @@ TableRow = tuple[str, dict[str, Any]]
 """Name of a table, and the values of one row by column."""
 
 
-@dataclass(frozen=True, slots=True)
-class BeliefRow:
+class BeliefRow(msgspec.Struct, frozen=True):
     """State of one belief at one tick.
 
     Attributes:

@@ -6,8 +6,9 @@ facts are stored: every follow-mode belief is computed from timelines.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from enum import StrEnum
+
+import msgspec
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.world.frames import Frame
@@ -19,8 +20,7 @@ FOLLOW = "follow"
 """Reserved branch name: the timeline of a simulator in follow mode."""
 
 
-@dataclass(frozen=True, slots=True)
-class Edit:
+class Edit(msgspec.Struct, frozen=True):
     """A manual change of one simulator's state, between two ticks.
 
     Attributes:
@@ -32,8 +32,8 @@ class Edit:
 
     tick: int
     path: BeliefPath
-    blocks: Mapping[Position, Block] = field(default_factory=dict)
-    containers: Mapping[Position, Items] = field(default_factory=dict)
+    blocks: Mapping[Position, Block] = msgspec.field(default_factory=dict)
+    containers: Mapping[Position, Items] = msgspec.field(default_factory=dict)
 
 
 Entry = Frame | Edit
@@ -49,16 +49,14 @@ class EntryFilter(StrEnum):
     """Frames that change blocks, contents or dropped items, and all edits."""
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class TimelineKey:
+class TimelineKey(msgspec.Struct, frozen=True, order=True):
     """Normalised path of a simulator and name of a branch; the real world's path is empty."""
 
     path: BeliefPath
     branch: str
 
 
-@dataclass(frozen=True, slots=True)
-class ForkPoint:
+class ForkPoint(msgspec.Struct, frozen=True):
     """Point at which another timeline begins: at `tick`, after the first `entries` entries."""
 
     timeline: TimelineKey
@@ -66,8 +64,7 @@ class ForkPoint:
     tick: int
 
 
-@dataclass(frozen=True, slots=True)
-class TimelineInfo:
+class TimelineInfo(msgspec.Struct, frozen=True):
     """Metadata of a timeline.
 
     Attributes:

@@ -2,10 +2,10 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from typing import Literal, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.timeline import codec
@@ -20,8 +20,7 @@ Senses = Literal["world", "percepts"]
 """Input of programs: the whole world, or only what their agents perceive or remember."""
 
 
-@dataclass(frozen=True, slots=True)
-class RunRecord:
+class RunRecord(msgspec.Struct, frozen=True):
     """Settings that a run was started with.
 
     Attributes:
@@ -41,7 +40,7 @@ class RunRecord:
     seed: int
     versions: Mapping[str, str]
     setting: bytes = b""
-    templates: Mapping[str, str] = field(default_factory=dict)
+    templates: Mapping[str, str] = msgspec.field(default_factory=dict)
 
     @property
     def condition_number(self) -> int | None:
@@ -57,8 +56,7 @@ class RunRecord:
         return int(self.condition)
 
 
-@dataclass(frozen=True, slots=True)
-class ProgramRecord:
+class ProgramRecord(msgspec.Struct, frozen=True):
     """An agent program and its result.
 
     Attributes:
@@ -103,8 +101,7 @@ class ProgramRecord:
     past: bytes | msgspec.UnsetType = msgspec.UNSET
 
 
-@dataclass(frozen=True, slots=True)
-class PromptRecord:
+class PromptRecord(msgspec.Struct, frozen=True):
     """One request to a model and its result.
 
     Attributes:
@@ -139,7 +136,7 @@ class PromptRecord:
     output_tokens: int = 0
     cost: float | None = 0.0
     cached: bool = False
-    detail: Mapping[str, str] = field(default_factory=dict)
+    detail: Mapping[str, str] = msgspec.field(default_factory=dict)
 
     @property
     def branch(self) -> str:

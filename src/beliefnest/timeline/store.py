@@ -9,13 +9,15 @@ of a run. The metadata of all timelines are in memory in both cases.
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain
 from operator import attrgetter
 from pathlib import Path
 from typing import NamedTuple, Self
 from weakref import finalize
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import BranchError
 from beliefnest.timeline import codec
@@ -93,8 +95,7 @@ class _TimelineRow(NamedTuple):
 _COLUMNS = ", ".join(_TimelineRow._fields)
 
 
-@dataclass(frozen=True, slots=True)
-class _Timeline:
+class _Timeline(msgspec.Struct, frozen=True):
     """A timeline with the entries that are not in the database.
 
     Attributes:

@@ -8,11 +8,11 @@ together.
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import decode_json, open_regular
@@ -127,16 +127,14 @@ class _TickLine(msgspec.Struct, forbid_unknown_fields=True):
     events: list[_EventLine] = []
 
 
-@dataclass(frozen=True, slots=True)
-class BadLine:
+class BadLine(msgspec.Struct, frozen=True):
     """An unusable line of a trace: its number, from 1, and the fault."""
 
     line: int
     fault: str
 
 
-@dataclass(frozen=True, slots=True)
-class Trace:
+class Trace(msgspec.Struct, frozen=True):
     """History that another program recorded.
 
     Attributes:

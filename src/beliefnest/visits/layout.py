@@ -1,12 +1,11 @@
 """Places of a nest's simulators in Minecraft, for people who visit them."""
 
-from dataclasses import dataclass
+import msgspec
 
 from beliefnest.world.values import Position
 
 
-@dataclass(frozen=True, slots=True)
-class Standing:
+class Standing(msgspec.Struct, frozen=True):
     """Place of one simulator in Minecraft.
 
     Attributes:

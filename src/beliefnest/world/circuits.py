@@ -6,7 +6,6 @@ The build of the package writes them from the embedded world's own rules
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
 
 import msgspec
@@ -45,8 +44,7 @@ class _File(Bundled, frozen=True, forbid_unknown_fields=True):
     plates: list[tuple[int, Literal["all", "living"]]]
 
 
-@dataclass(frozen=True, eq=False)
-class Circuits:
+class Circuits(msgspec.Struct, frozen=True, eq=False):
     """Facts about the block states of one Minecraft version.
 
     Attributes:

@@ -3,7 +3,6 @@
 All that depends on the kind of an event alone is declared here and nowhere else.
 """
 
-from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from typing import Any, Self
 
@@ -64,8 +63,7 @@ class EventDetail(msgspec.Struct, forbid_unknown_fields=True):
     claims_from: str | msgspec.UnsetType = msgspec.UNSET
 
 
-@dataclass(frozen=True, slots=True)
-class Traits:
+class Traits(msgspec.Struct, frozen=True):
     """Facts about a kind of events.
 
     Attributes:
@@ -84,13 +82,16 @@ class Traits:
     is_deed: bool = True
 
 
+_PLAIN = Traits()
+
+
 class EventKind(StrEnum):
     """Kinds of events (semantics, section 1), each with its traits."""
 
     _value_: str
     traits: Traits
 
-    def __new__(cls, name: str, traits: Traits = Traits()) -> Self:
+    def __new__(cls, name: str, traits: Traits = _PLAIN) -> Self:
         """Return a member with its traits."""
         kind = str.__new__(cls, name)
         kind._value_, kind.traits = name, traits

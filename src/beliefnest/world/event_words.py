@@ -1,8 +1,10 @@
 """Events in words: one table for prompts, explanations, plots, pages and reports."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from typing import Any, Protocol
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.registry import Registry, block_name
@@ -24,8 +26,7 @@ class _Event(Protocol):
     def detail(self) -> Mapping[str, Any]: ...
 
 
-@dataclass(frozen=True, slots=True)
-class EventWords:
+class EventWords(msgspec.Struct, frozen=True):
     """Words for one kind of event.
 
     Patterns name details: text, to, destination, block, place, items, other, name; for switches

@@ -5,11 +5,12 @@ tick. Both hold facts, never beliefs.
 """
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import force_setattr
 
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import (
@@ -42,8 +43,7 @@ def places_of(
         yield (x + i, y + j, z + k), (i, j, k)
 
 
-@dataclass(frozen=True, slots=True)
-class Frame:
+class Frame(msgspec.Struct, frozen=True):
     """Changes of one simulator during one tick.
 
     Attributes:
@@ -57,10 +57,10 @@ class Frame:
     """
 
     tick: int
-    agents: Mapping[str, AgentState | None] = field(default_factory=dict)
-    blocks: Mapping[Position, Block] = field(default_factory=dict)
-    containers: Mapping[Position, Items | None] = field(default_factory=dict)
-    items: Mapping[int, DroppedItem | None] = field(default_factory=dict)
+    agents: Mapping[str, AgentState | None] = msgspec.field(default_factory=dict)
+    blocks: Mapping[Position, Block] = msgspec.field(default_factory=dict)
+    containers: Mapping[Position, Items | None] = msgspec.field(default_factory=dict)
+    items: Mapping[int, DroppedItem | None] = msgspec.field(default_factory=dict)
     events: tuple[Event, ...] = ()
 
     def __post_init__(self) -> None:
@@ -68,7 +68,7 @@ class Frame:
         # memory.
         for name in ("agents", "blocks", "containers", "items"):
             if not getattr(self, name):
-                object.__setattr__(self, name, _NOTHING)
+                force_setattr(self, name, _NOTHING)
 
     @property
     def is_empty(self) -> bool:
@@ -76,8 +76,7 @@ class Frame:
         return not (self.agents or self.blocks or self.containers or self.items or self.events)
 
 
-@dataclass(frozen=True, slots=True)
-class Snapshot:
+class Snapshot(msgspec.Struct, frozen=True):
     """State of one simulator at one tick; it must not be changed.
 
     Attributes:
@@ -99,10 +98,10 @@ class Snapshot:
     blocks: Terrain
     containers: Mapping[Position, Items]
     agents: Mapping[str, AgentState]
-    items: Mapping[int, DroppedItem] = field(default_factory=dict)
+    items: Mapping[int, DroppedItem] = msgspec.field(default_factory=dict)
     internal_state: bytes = b""
-    signs: Mapping[Position, str] = field(default_factory=dict)
-    sign_claims: Mapping[Position, PlainClaims] = field(default_factory=dict)
+    signs: Mapping[Position, str] = msgspec.field(default_factory=dict)
+    sign_claims: Mapping[Position, PlainClaims] = msgspec.field(default_factory=dict)
 
     def places(self, states: Collection[int]) -> list[Position]:
         """Return the positions of the blocks with one of some states, in order."""

@@ -7,7 +7,6 @@ depends on the pose of the agent in the embedded world, and to break what holds 
 
 import functools
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 import msgspec
 
@@ -37,8 +36,7 @@ class _File(Bundled, frozen=True, forbid_unknown_fields=True):
     pressed: dict[str, int]
 
 
-@dataclass(frozen=True, eq=False)
-class Handling:
+class Handling(msgspec.Struct, frozen=True, eq=False):
     """Results of using and breaking the blocks of one Minecraft version by hand."""
 
     _breaking: Mapping[str, _Breaking]

@@ -1,14 +1,14 @@
 """Input of readers that extract claims from free text."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from beliefnest.world.claims import Claim
 from beliefnest.world.values import Box, Position
 
 
-@dataclass(frozen=True, slots=True)
-class Nameable:
+class Nameable(msgspec.Struct, frozen=True):
     """Things that a speaker can name: those of its belief just before it speaks.
 
     Attributes:
@@ -30,7 +30,7 @@ class Nameable:
     containers: Mapping[Position, str]
     doors: Mapping[Position, str]
     places: Mapping[str, Position]
-    called: Mapping[str, str] = field(default_factory=dict)
+    called: Mapping[str, str] = msgspec.field(default_factory=dict)
 
 
 ClaimsFrom = Callable[[str, str, Nameable], Iterable[Claim]]

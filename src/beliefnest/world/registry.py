@@ -12,12 +12,12 @@ import math
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from beliefnest.errors import BodyError, InputError, UnknownNameError
 from beliefnest.world.bundled import Bundled, read_bundled
@@ -57,8 +57,7 @@ class _RegistryFile(Bundled, frozen=True, forbid_unknown_fields=True):
     items: list[tuple[str, int]]
 
 
-@dataclass(frozen=True, slots=True)
-class _Block:
+class _Block(msgspec.Struct, frozen=True):
     """One block; its state ids enumerate the property values, the last property fastest."""
 
     name: str
@@ -90,8 +89,7 @@ class _Block:
         return tuple(reversed(chosen))
 
 
-@dataclass(frozen=True, eq=False)
-class Registry:
+class Registry(msgspec.Struct, frozen=True, eq=False):
     """Blocks and items of one Minecraft version.
 
     Attributes:

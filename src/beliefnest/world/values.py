@@ -8,8 +8,10 @@ of 50 ms.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple
+
+import msgspec
 
 from beliefnest.errors import PositionError
 from beliefnest.world.event_kinds import EventKind
@@ -103,8 +105,7 @@ class Box:
                     yield (x, y, z)
 
 
-@dataclass(frozen=True, slots=True)
-class Event:
+class Event(msgspec.Struct, frozen=True):
     """An event during one tick.
 
     Attributes:
@@ -115,11 +116,10 @@ class Event:
 
     kind: EventKind
     actor: str | None
-    detail: Mapping[str, Any] = field(default_factory=dict)
+    detail: Mapping[str, Any] = msgspec.field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class AgentState:
+class AgentState(msgspec.Struct, frozen=True):
     """Actual pose and possessions of one agent (not anyone's belief about them).
 
     Attributes:
@@ -137,8 +137,8 @@ class AgentState:
     yaw: float = 0.0
     pitch: float = 0.0
     on_ground: bool = True
-    equipment: Mapping[str, str] = field(default_factory=dict)
-    inventory: Items = field(default_factory=dict)
+    equipment: Mapping[str, str] = msgspec.field(default_factory=dict)
+    inventory: Items = msgspec.field(default_factory=dict)
     health: float = 20.0
     food: float = 20.0
 
@@ -156,8 +156,7 @@ class AgentState:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class DroppedItem:
+class DroppedItem(msgspec.Struct, frozen=True):
     """An item entity in the world."""
 
     name: str

@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
+import msgspec
+
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.event_words import Announcement
 from beliefnest.world.frames import Frame, Snapshot
@@ -21,8 +23,7 @@ NO_WAY = "no_way"
 """Reason of a failure: the target cannot be reached on foot."""
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
+class Fault(msgspec.Struct, frozen=True):
     """Failure of a program, described for its author.
 
     Attributes:
@@ -48,8 +49,7 @@ class Fault:
         return f"{place}{self.message}"
 
 
-@dataclass(frozen=True, slots=True)
-class Aim:
+class Aim(msgspec.Struct, frozen=True):
     """Target that a program asked its bot to walk to or to use, whether or not it succeeded.
 
     Attributes:
@@ -67,8 +67,7 @@ class Aim:
     uses: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Unfinished:
+class Unfinished(msgspec.Struct, frozen=True):
     """Activity that was unfinished at the end of a program and was stopped.
 
     Attributes:
@@ -88,8 +87,7 @@ class Unfinished:
         return self.what if self.line is None else f"{self.what} of line {self.line}"
 
 
-@dataclass(frozen=True, slots=True)
-class Called:
+class Called(msgspec.Struct, frozen=True):
     """Recorded call of a program: of a skill, or of its bot to speak.
 
     Attributes:
@@ -107,8 +105,7 @@ class Called:
     since: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class ProgramPast:
+class ProgramPast(msgspec.Struct, frozen=True):
     """Record of a program up to its interruption, with which it can be resumed.
 
     The program's text runs again. Calls that had finished return their recorded results without
@@ -209,8 +206,7 @@ class ProgramResult:
         return self.error is not None and self.error.kind == KILLED
 
 
-@dataclass(frozen=True)
-class Sensed:
+class Sensed(msgspec.Struct, frozen=True):
     """Knowledge of the world that a program may read.
 
     Attributes:
@@ -223,17 +219,16 @@ class Sensed:
 
     blocks: Terrain
     agents: Mapping[str, AgentState]
-    items: Mapping[int, DroppedItem] = field(default_factory=dict)
+    items: Mapping[int, DroppedItem] = msgspec.field(default_factory=dict)
     announced: tuple[Announcement, ...] = ()
-    signs: Mapping[Position, str] = field(default_factory=dict)
+    signs: Mapping[Position, str] = msgspec.field(default_factory=dict)
 
 
 SenseSource = Callable[[], Sensed]
 """Function that returns what a program may read, as of the latest tick that has ended."""
 
 
-@dataclass(frozen=True, slots=True)
-class RunRules:
+class RunRules(msgspec.Struct, frozen=True):
     """Rules of running programs in a body.
 
     Attributes:
@@ -244,7 +239,7 @@ class RunRules:
 
     speech_ticks: int = 0
     remembers: bool = False
-    past: Mapping[str, ProgramPast] = field(default_factory=dict)
+    past: Mapping[str, ProgramPast] = msgspec.field(default_factory=dict)
 
 
 AS_USUAL = RunRules()

@@ -3,13 +3,13 @@
 import json
 import random
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas
 import pytest
 from msgspec import convert
+from msgspec.structs import replace
 from tests.profiles import NIGHTLY
 
 from beliefnest.cli.app import run_command_line

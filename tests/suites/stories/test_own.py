@@ -1,9 +1,9 @@
 """One's own stories: JSON lines, as sentences and as objects, in both worlds."""
 
 import json
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 from tests.profiles import few_by_day
 
 import beliefnest as bn

@@ -1,11 +1,11 @@
 """Places of exhibits, names of agents there; only changes are sent."""
 
 import re
-from dataclasses import replace
 from itertools import pairwise
 
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box

@@ -1,9 +1,9 @@
 """The scripted world: exactly the moves it is told, and nothing when they are impossible."""
 
 import math
-from dataclasses import fields, replace
 
 import pytest
+from msgspec.structs import fields, replace
 
 import beliefnest as bn
 from beliefnest.world.frames import Snapshot

@@ -5,10 +5,10 @@ import socket
 import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
-from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from tests.servers import GameServer
 
 from beliefnest.errors import BeliefNestError, BodyError, InputError, WorldError

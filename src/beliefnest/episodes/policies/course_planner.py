@@ -12,6 +12,8 @@ on beliefs down to k levels below its own belief.
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
+
 from beliefnest.episodes.agent_view import Brief
 from beliefnest.episodes.imagination import Imagination, Performer
 from beliefnest.episodes.policies.candidates import (
@@ -42,8 +44,7 @@ _MOST_CHANGES = 3
 """Greatest number of replans within a plan, of all other agents together, if there are more."""
 
 
-@dataclass(frozen=True, slots=True)
-class SearchBounds:
+class SearchBounds(msgspec.Struct, frozen=True):
     """Bounds of the search.
 
     Attributes:
@@ -69,8 +70,7 @@ USUAL = SearchBounds()
 """Bounds of policies that are named on the command line."""
 
 
-@dataclass(frozen=True, slots=True)
-class FoundPlan:
+class FoundPlan(msgspec.Struct, frozen=True):
     """Result of planning.
 
     Attributes:
@@ -84,7 +84,7 @@ class FoundPlan:
     calls: tuple[Call, ...]
     score: CourseScore
     considered: Sequence[tuple[tuple[Call, ...], CourseScore]] = ()
-    others: Mapping[str, tuple[Call, ...]] = field(default_factory=dict)
+    others: Mapping[str, tuple[Call, ...]] = msgspec.field(default_factory=dict)
     reason: str = ""
 
 

@@ -8,7 +8,9 @@ them, and the one with the best expected outcome is chosen.
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.episodes.agent_view import AgentView, Brief
 from beliefnest.episodes.considered import SearchTrace, TriedCourse
@@ -35,8 +37,7 @@ _PER_DEED = 10.0
 """Penalty of an open goal for each missing action, in ticks."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Supposition:
+class _Supposition(msgspec.Struct, frozen=True, eq=False):
     """Assumed goals of others and places of items.
 
     Attributes:

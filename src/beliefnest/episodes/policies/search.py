@@ -1,7 +1,8 @@
 """Policies that plan without a language model: `search:ORDER` and its upper bound."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.considered import CourseOutcome, SearchTrace, TriedCourse
@@ -23,8 +24,7 @@ _FAILED = ("failed", "no_way")
 """Ends of programs after which their first call is not repeated at once."""
 
 
-@dataclass(frozen=True)
-class Search:
+class Search(msgspec.Struct, frozen=True):
     """Policy that plans by search, with beliefs of others down to its order.
 
     Attributes:
@@ -82,8 +82,7 @@ def _has_waited_in_vain(view: AgentView) -> bool:
     )
 
 
-@dataclass(frozen=True)
-class Omniscient:
+class Omniscient(msgspec.Struct, frozen=True):
     """Policy that plans in reality and knows the true beliefs of others: an upper bound.
 
     Attributes:

@@ -7,7 +7,8 @@ world as the agent found it are more probable (Jara-Ettinger and Schachner 2024)
 """
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.belief.grounds import ContainerBelief, Source
 from beliefnest.belief.view import State
@@ -24,8 +25,7 @@ _MISTAKEN = 0.1
 _PERCEIVED = (Source.SEEN, Source.WITNESSED)
 
 
-@dataclass(frozen=True)
-class _Moment:
+class _Moment(msgspec.Struct, frozen=True):
     """World from a tick on."""
 
     tick: int

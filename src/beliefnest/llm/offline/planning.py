@@ -19,7 +19,8 @@ For any other task the program only thinks a thought.
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.llm.offline import program_texts
 from beliefnest.llm.offline.phrases import match_item, match_name, place_named_last, singular
@@ -51,8 +52,7 @@ _COUNTS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class _Wanted:
+class _Wanted(msgspec.Struct, frozen=True):
     """Count, item and source as a task words them."""
 
     count: int

@@ -4,7 +4,8 @@ import ast
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.world.values import Point
 
@@ -36,8 +37,7 @@ _PLACE = re.compile(rf"(?:-\s*)?([A-Za-z][\w' ]*?)(?: is at|:)\s*({_POINT.patter
 _PLACE_IN_SENTENCE = re.compile(rf"\b([A-Z]\w*(?: [A-Z]\w*)*) is at ({_POINT.pattern})")
 
 
-@dataclass(frozen=True, slots=True)
-class HeardUtterance:
+class HeardUtterance(msgspec.Struct, frozen=True):
     """Speaker, text and tick of something heard."""
 
     speaker: str
@@ -45,8 +45,7 @@ class HeardUtterance:
     tick: int = 0
 
 
-@dataclass(frozen=True)
-class PromptReading:
+class PromptReading(msgspec.Struct, frozen=True):
     """Contents of a prompt.
 
     Attributes:

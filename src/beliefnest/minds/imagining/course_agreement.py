@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 
 from beliefnest.belief.chunk_pool import lines_of_sight
@@ -18,8 +19,7 @@ _MOST_GRIDS = 4096
 _DEEDS = "actions at containers"
 
 
-@dataclass(frozen=True, slots=True)
-class Tolerance:
+class Tolerance(msgspec.Struct, frozen=True):
     """Allowed differences.
 
     Attributes:
@@ -31,8 +31,7 @@ class Tolerance:
     ticks: int = 0
 
 
-@dataclass(frozen=True, eq=False)
-class Witness:
+class Witness(msgspec.Struct, frozen=True, eq=False):
     """Percepts of an observer, and the rules of their comparison.
 
     Attributes:

@@ -6,12 +6,14 @@ up to any tick.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 from typing import Any
 
+import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import InputError, WorldError
@@ -51,8 +53,7 @@ Seeds = tuple[tuple[int, str], ...]
 """Seeds, each with the tick from which it is used."""
 
 
-@dataclass(frozen=True)
-class Candidate:
+class Candidate(msgspec.Struct, frozen=True):
     """A course of action that an agent may have followed.
 
     Attributes:
@@ -120,8 +121,7 @@ class CoursePlan:
         return self._worlds[drawn].again()
 
 
-@dataclass(frozen=True, slots=True)
-class Glimpse:
+class Glimpse(msgspec.Struct, frozen=True):
     """Perceptible facts of a course at one tick.
 
     Attributes:

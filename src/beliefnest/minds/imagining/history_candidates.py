@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from inspect import signature
 from typing import Any
 
+import msgspec
+
 from beliefnest.errors import InputError
 from beliefnest.minds.imagining.courses import Candidate, Course, PolicyProgram
 from beliefnest.minds.imagining.histories import PastFace
@@ -18,8 +20,7 @@ from beliefnest.world.paths import BeliefPath, normalised
 from beliefnest.world.values import block_at
 
 
-@dataclass(frozen=True)
-class Candidates:
+class Candidates(msgspec.Struct, frozen=True):
     """Checks of candidates, and their preparation.
 
     Attributes:

@@ -1,7 +1,10 @@
 """Beginnings of imagined histories, by the alternatives that were drawn."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.minds.imagining.courses import Candidate, Course
 from beliefnest.minds.walking import Strategy
@@ -15,8 +18,7 @@ from beliefnest.world.signs import plain_state
 from beliefnest.world.values import AgentState, Block, Items, Position
 
 
-@dataclass(frozen=True, eq=False)
-class Doubt:
+class Doubt(msgspec.Struct, frozen=True, eq=False):
     """A doubt that one or several models share."""
 
     elements: frozenset[tuple[str, object]]

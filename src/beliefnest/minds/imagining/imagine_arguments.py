@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import InputError, PathError, TickError
 from beliefnest.facts.kinds import StatedFact
@@ -20,8 +21,7 @@ Evidence = Sequence[tuple[Sequence[StatedFact], float]]
 """Conditions at the end of histories, each with the probability that it is mistaken."""
 
 
-@dataclass(frozen=True)
-class Asked:
+class Asked(msgspec.Struct, frozen=True):
     """Arguments of a call, as given; see `ShownSimulator.imagine`."""
 
     since: int
@@ -34,8 +34,7 @@ class Asked:
     tolerance: tuple[int, int]
 
 
-@dataclass(frozen=True)
-class Checked:
+class Checked(msgspec.Struct, frozen=True):
     """Arguments of a call, checked."""
 
     base: ForkPoint

@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
+import msgspec
+
 from beliefnest.minds.imagining.course_agreement import Agreement
 from beliefnest.minds.imagining.courses import Candidate, Course, CoursePlan, Glimpse, Seeds
 from beliefnest.minds.walking import Draw
@@ -34,8 +36,7 @@ class Particle:
     weight: float
 
 
-@dataclass(frozen=True)
-class Drawn:
+class Drawn(msgspec.Struct, frozen=True):
     """Draws for one history at its start."""
 
     alternatives: tuple[int, ...]
@@ -43,8 +44,7 @@ class Drawn:
     draws: Mapping[str, Draw]
 
 
-@dataclass(frozen=True, slots=True)
-class Lost:
+class Lost(msgspec.Struct, frozen=True):
     """Tick from which on no history agrees.
 
     Attributes:

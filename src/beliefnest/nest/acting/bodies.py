@@ -6,7 +6,8 @@ recorded. Each body has a recorder, which appends frames to the selected timelin
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.earshot import Earshot
@@ -25,8 +26,7 @@ from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.worlds.protocol import Body, ProgramPast, SenseSource, World
 
 
-@dataclass(frozen=True, slots=True)
-class _RecordedBody:
+class _RecordedBody(msgspec.Struct, frozen=True):
     """Body with the recorder of its frames."""
 
     body: Body

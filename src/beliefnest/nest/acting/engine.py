@@ -7,12 +7,13 @@ ends during a call, the call is repeated in a new process. Programs are the exce
 `killed`, and only steps of the script are repeated.
 """
 
+import dataclasses
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import wraps
 from typing import Concatenate, ParamSpec, Self, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import BodyLostError, BranchError
 from beliefnest.importing import part
@@ -66,8 +67,7 @@ def _shown(method: Callable[Concatenate["Engine", P], R]) -> Callable[Concatenat
     return visible
 
 
-@dataclass(frozen=True, slots=True)
-class _Request:
+class _Request(msgspec.Struct, frozen=True):
     """Request to run programs together. The fields are those of `Engine.run`."""
 
     programs: Mapping[str, str]
@@ -229,7 +229,9 @@ class Engine:
                 results = body.run(programs, request.timeout_ticks, limited, rules)
                 self._note(before, request, results)
             if placed := placed_in(self.recording, path):
-                results = {name: replace(each, placed=placed) for name, each in results.items()}
+                results = {
+                    name: dataclasses.replace(each, placed=placed) for name, each in results.items()
+                }
         except BodyLostError as lost:
             message = (
                 f"nothing that the program did is kept, {path_text(path)} is at tick "

@@ -5,8 +5,9 @@ Later readers and replays use the record and never ask the model again.
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from typing import Any, Protocol
+
+from msgspec.structs import replace
 
 from beliefnest.nest.acting.sensing import believer_of
 from beliefnest.nest.past.labelled import Labelled

@@ -10,8 +10,10 @@ whether an agent fits at a place between cells, such as beside the leaf of a shu
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import product
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.geometry.bodies import HARMFUL
 from beliefnest.world.doors import is_open
@@ -35,8 +37,7 @@ _BEYOND = 3
 """Cells beyond a part at which its steps look."""
 
 
-@dataclass(frozen=True, eq=False)
-class BodySpace:
+class BodySpace(msgspec.Struct, frozen=True, eq=False):
     """Believed blocks of a box, as obstacles and floors of agents."""
 
     registry: Registry

@@ -1,10 +1,10 @@
 """Replay of recorded programs, each timeline in a fresh body, with a comparison of frames."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import groupby
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.nest.acting.hearsay import recalled
 from beliefnest.nest.acting.sensing import Sensing
@@ -22,8 +22,7 @@ from beliefnest.world.paths import path_text
 from beliefnest.worlds.protocol import Body, ProgramPast, RunRules, SenseSource, World
 
 
-@dataclass(frozen=True, slots=True)
-class ReplayedTimeline:
+class ReplayedTimeline(msgspec.Struct, frozen=True):
     """Result of the replay of one timeline.
 
     Attributes:
@@ -37,8 +36,7 @@ class ReplayedTimeline:
     difference: EntryDifference | None
 
 
-@dataclass(frozen=True, slots=True)
-class _RecordedCall:
+class _RecordedCall(msgspec.Struct, frozen=True):
     """Programs that ran together in one call, with the tick, entries and ticks of the call."""
 
     tick: int
@@ -54,8 +52,7 @@ class _RecordedCall:
         return self.tick < entry.tick <= self.tick + self.ticks
 
 
-@dataclass(frozen=True, slots=True)
-class _RecordedTimeline:
+class _RecordedTimeline(msgspec.Struct, frozen=True):
     """Timeline as it was recorded."""
 
     journal: Journal

@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from threading import Event
 
+import msgspec
+
 from beliefnest.errors import BeliefNestError, BodyError, BodyLostError, WorldError
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.world.frames import Frame, Snapshot
@@ -26,8 +28,7 @@ from beliefnest.worlds.protocol import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class SpeculationStart:
+class SpeculationStart(msgspec.Struct, frozen=True):
     """Initial state of the bodies in which programs run. `name` is unique in their worlds."""
 
     name: str

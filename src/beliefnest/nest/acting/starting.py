@@ -1,7 +1,9 @@
 """Initial states of bodies: states of timelines, adapted where a belief is impossible."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import Source
 from beliefnest.belief.node_view import NodeView
@@ -21,8 +23,7 @@ _FLOOR = "barrier"
 """Block that a body puts for an unknown floor below a believed agent."""
 
 
-@dataclass(frozen=True, slots=True)
-class BodyStart:
+class BodyStart(msgspec.Struct, frozen=True):
     """Initial state of a body, and the frame to record for it.
 
     Attributes:

@@ -6,7 +6,10 @@ in the parent node that did not reach it. `sightings` then says why it did not.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.forest import Forest
@@ -136,8 +139,7 @@ def _explanation(recording: Recording, inquiry: "_Inquiry") -> Explanation:
     return Explanation(element, moment.tick, fact, levels, before)
 
 
-@dataclass(frozen=True)
-class _HeldNow:
+class _HeldNow(msgspec.Struct, frozen=True):
     """Value of an element in a node at the explained moment, with its ground, as users read it."""
 
     value: Value

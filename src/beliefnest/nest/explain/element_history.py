@@ -2,8 +2,9 @@
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.forest import Forest
@@ -19,8 +20,7 @@ from beliefnest.world.signs import block_words, plain_state
 from beliefnest.world.values import Box
 
 
-@dataclass(frozen=True, slots=True)
-class LogStep:
+class LogStep(msgspec.Struct, frozen=True):
     """Forest after one more entry of a timeline.
 
     Attributes:

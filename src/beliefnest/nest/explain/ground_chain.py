@@ -6,7 +6,9 @@ heard a claim. The node keeps the last basis only; this module keeps all that st
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+
+from msgspec.structs import replace
 
 from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.forest import Forest

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
 
+import msgspec
+
 from beliefnest.belief.grounds import Basis, PerceivedEvent
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath
@@ -28,8 +30,7 @@ Value = str | Point | Contents | None
 """Text of a block state, feet position of an agent, or contents; None: unknown, or none."""
 
 
-@dataclass(frozen=True, slots=True)
-class Element:
+class Element(msgspec.Struct, frozen=True):
     """Element that is explained.
 
     Attributes:
@@ -53,8 +54,7 @@ class View(StrEnum):
     PLACE_UNKNOWN = "place unknown"
 
 
-@dataclass(frozen=True, slots=True)
-class Sighting:
+class Sighting(msgspec.Struct, frozen=True):
     """Look at an agent or a block.
 
     Attributes:
@@ -75,8 +75,7 @@ class Sighting:
     blocker_name: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Absence:
+class Absence(msgspec.Struct, frozen=True):
     """Absence of a perceiver: the owner of the parent node did not see it at that tick.
 
     The parent node then cannot tell what the perceiver saw (semantics, section 5.2).
@@ -92,8 +91,7 @@ class Absence:
     sighting: Sighting | None
 
 
-@dataclass(frozen=True, slots=True)
-class Missed:
+class Missed(msgspec.Struct, frozen=True):
     """Change in the parent node that did not reach the belief.
 
     For an element that was never known there need be no change: `tick` is that of the explanation,
@@ -122,8 +120,7 @@ class Missed:
     saw_acts: bool
 
 
-@dataclass(frozen=True, slots=True)
-class HeardClaim:
+class HeardClaim(msgspec.Struct, frozen=True):
     """Claim about an element that a holder believed when it heard or read it.
 
     Attributes:
@@ -142,8 +139,7 @@ class HeardClaim:
     refuted: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class SeenElsewhere:
+class SeenElsewhere(msgspec.Struct, frozen=True):
     """Perception or edit of a unique item that made a holder believe that it left a container.
 
     Attributes:
@@ -160,8 +156,7 @@ class SeenElsewhere:
     edited: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ValueGround:
+class ValueGround(msgspec.Struct, frozen=True):
     """Perception, prior belief or edit by hand on which a value rests, apart from claims.
 
     Attributes:
@@ -196,8 +191,7 @@ Reason = ValueGround | HeardClaim | SeenElsewhere
 """Reason for a value: a perception, a prior, an edit or a claim."""
 
 
-@dataclass(frozen=True, slots=True)
-class BaseFact:
+class BaseFact(msgspec.Struct, frozen=True):
     """Element in the world of the timeline from which all beliefs follow.
 
     Attributes:
@@ -221,8 +215,7 @@ class BaseFact:
     forked_at: int | None
 
 
-@dataclass(frozen=True, slots=True)
-class Level:
+class Level(msgspec.Struct, frozen=True):
     """Belief of one agent along the path about the element, with its ground.
 
     Attributes:

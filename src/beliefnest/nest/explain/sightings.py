@@ -1,10 +1,11 @@
 """Looks of an agent at other agents and at blocks inside one simulator, and their results."""
 
+import dataclasses
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import AgentBelief
 from beliefnest.belief.node_view import NodeView
@@ -68,8 +69,10 @@ def _view(geometry: SightLines, sees: _Sees, away: float) -> View:
     far = geometry.sight.max_visible_distance
     if far is not None and away > far:
         return View.TOO_FAR
-    all_round = replace(geometry.sight, field_of_view=360.0)
-    return View.OUTSIDE_VIEW if sees(replace(geometry, sight=all_round)) else View.BLOCKED
+    all_round = dataclasses.replace(geometry.sight, field_of_view=360.0)
+    return (
+        View.OUTSIDE_VIEW if sees(dataclasses.replace(geometry, sight=all_round)) else View.BLOCKED
+    )
 
 
 def _with_blocker(

@@ -7,6 +7,8 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import SupportsFloat
 
+import msgspec
+
 from beliefnest.belief.view import State
 from beliefnest.errors import BranchError, InputError
 from beliefnest.nest.acting.engine import Engine
@@ -52,8 +54,7 @@ class Attempt:
         return f"<attempt on branch {self.branch!r}, {score_words}: {self.result!r}>"
 
 
-@dataclass(frozen=True, slots=True)
-class Exploration:
+class Exploration(msgspec.Struct, frozen=True):
     """Programs to try from a simulator's present, by name; see `Nest.explore`."""
 
     engine: Engine

@@ -1,9 +1,10 @@
 """Opening of nests, for new runs and for recorded ones."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
@@ -42,13 +43,12 @@ class HasSetting(Protocol):
         """The number of the chosen condition; None if there are no conditions."""
 
 
-@dataclass(frozen=True, slots=True)
-class BareSetting:
+class BareSetting(msgspec.Struct, frozen=True):
     """Setting without a scenario file. The attributes are those of `HasSetting`."""
 
     setting: Setting
     text: str = ""
-    templates: Mapping[str, str] = field(default_factory=dict)
+    templates: Mapping[str, str] = msgspec.field(default_factory=dict)
     condition: int | None = None
 
 

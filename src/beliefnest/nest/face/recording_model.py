@@ -1,8 +1,10 @@
 """Recording model: asks another model and records requests and answers in the run."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import replace
 
 from beliefnest.errors import ModelError
 from beliefnest.nest.past.recording import Recording

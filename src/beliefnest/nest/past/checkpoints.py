@@ -9,11 +9,13 @@ setting or another version looks under another name and never finds it.
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from hashlib import blake2b
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import EventHistory, Forest
@@ -30,8 +32,7 @@ _ROOMS = ("world", "perception", "belief", "nest/past")
 """Folders of the package whose source code determines forests."""
 
 
-@dataclass(frozen=True, slots=True)
-class Pace:
+class Pace(msgspec.Struct, frozen=True):
     """Intervals of folding and saving, in entries of a timeline.
 
     Attributes:
@@ -48,8 +49,7 @@ class Pace:
     budget: int = 128
 
 
-@dataclass(frozen=True, slots=True)
-class _Kept:
+class _Kept(msgspec.Struct, frozen=True):
     """Last checkpoint of a timeline: its position, its size in bytes and its number of nodes."""
 
     place: int = 0

@@ -7,9 +7,9 @@ function here is pure, so that a body that is made again from the same belief is
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.world.double_chests import (
     container_at,

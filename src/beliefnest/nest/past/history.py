@@ -11,8 +11,10 @@ on the forest that it comes from.
 import functools
 from collections.abc import Container, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import accumulate, islice, takewhile
+
+from msgspec.structs import replace
 
 from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext

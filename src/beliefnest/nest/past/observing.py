@@ -1,8 +1,8 @@
 """Observations of a node's owner in the order of time, read from the node's timeline."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 
 from beliefnest.belief.columns import cell_of
@@ -39,8 +39,7 @@ _DEEDS_AT_BLOCKS = frozenset(
 """Acts that say what happens to blocks in the same tick."""
 
 
-@dataclass(frozen=True)
-class _Look:
+class _Look(msgspec.Struct, frozen=True):
     """View of one observer at a tick.
 
     Attributes:
@@ -51,7 +50,7 @@ class _Look:
 
     agents: Mapping[str, Point]
     places: frozenset[Position]
-    kinds: Mapping[Position, str] = field(default_factory=dict)
+    kinds: Mapping[Position, str] = msgspec.field(default_factory=dict)
 
     @property
     def all(self) -> frozenset[str | Position]:
@@ -63,8 +62,7 @@ _Looks = Mapping[str, _Look]
 _NOTHING_SEEN = _Look({}, frozenset())
 
 
-@dataclass(frozen=True)
-class _Scene:
+class _Scene(msgspec.Struct, frozen=True):
     """Percepts in a node at a tick, as far as a story tells them.
 
     Attributes:

@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+import msgspec
+
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
@@ -17,8 +19,7 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+class Moment(msgspec.Struct, frozen=True):
     """State of a simulator at a tick at which something changed.
 
     Attributes:

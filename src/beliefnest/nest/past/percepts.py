@@ -8,11 +8,12 @@ percept before still holds.
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from typing import Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from beliefnest.belief.columns import cell_of, cells_between
 from beliefnest.belief.forest import Forest
@@ -29,8 +30,7 @@ DeedKey = tuple[str, str, Position, tuple[tuple[str, int], ...]]
 """Kind, actor, container, and the items that were seen being moved."""
 
 
-@dataclass(frozen=True, eq=False)
-class Percept:
+class Percept(msgspec.Struct, frozen=True, eq=False):
     """Percept of the owner of a node at one tick.
 
     Attributes:

@@ -1,7 +1,9 @@
 """Setting of a nest: its world at the first tick, options of perception, priors and script."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.belief.grounds import InitialBelief
 from beliefnest.errors import InputError, PathError
@@ -49,8 +51,7 @@ class Step:
     senses: Senses = "world"
 
 
-@dataclass(frozen=True, slots=True)
-class Setting:
+class Setting(msgspec.Struct, frozen=True):
     """Setting of a nest, as a scenario with one chosen condition gives it.
 
     Attributes:
@@ -71,15 +72,15 @@ class Setting:
 
     name: str
     snapshot: Snapshot
-    perception: Perception = field(default_factory=Perception)
+    perception: Perception = msgspec.field(default_factory=Perception)
     static_blocks: frozenset[str | Position] = frozenset()
     initial_beliefs: tuple[InitialBelief, ...] = ()
     script: tuple[Step, ...] = ()
     absent: frozenset[str] = frozenset()
     people: frozenset[str] = frozenset()
-    labels: Mapping[Position, str] = field(default_factory=dict)
-    places: Mapping[str, Position] = field(default_factory=dict)
-    prompt_labels: Mapping[Position, str] = field(default_factory=dict)
+    labels: Mapping[Position, str] = msgspec.field(default_factory=dict)
+    places: Mapping[str, Position] = msgspec.field(default_factory=dict)
+    prompt_labels: Mapping[Position, str] = msgspec.field(default_factory=dict)
     unique: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:

@@ -7,11 +7,11 @@ read of it.
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import accumulate
 
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source

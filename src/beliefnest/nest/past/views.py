@@ -1,8 +1,8 @@
 """Views of agents in nodes."""
 
 import math
-from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -38,8 +38,7 @@ def visible_from(reading: NodeView, sight: Sight, agent: str) -> npt.NDArray[np.
     return seen
 
 
-@dataclass(frozen=True, slots=True)
-class VisiblePart:
+class VisiblePart(msgspec.Struct, frozen=True):
     """Blocks that an agent sees, in the part of the box within the greatest visible distance.
 
     Attributes:

@@ -1,7 +1,6 @@
 """Items as cells of a plan: each asked once of one model."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import msgspec
@@ -39,8 +38,7 @@ ITEM_KIND = suite_kind(
 )
 
 
-@dataclass(frozen=True)
-class ItemCell:
+class ItemCell(msgspec.Struct, frozen=True):
     """Item, asked once of one model.
 
     Attributes:

@@ -4,8 +4,9 @@ import json
 import random
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
+
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.nest.face.nest import Nest

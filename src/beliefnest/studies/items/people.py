@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+import msgspec
+
 from beliefnest.errors import InputError
 from beliefnest.plan.terms import PlayStage
 from beliefnest.studies.items.asking import ItemAnswer
@@ -36,8 +38,7 @@ class _PersonItemKey(SuiteKey):
     participant: str
 
 
-@dataclass(frozen=True)
-class PersonItemCell:
+class PersonItemCell(msgspec.Struct, frozen=True):
     """Item that a participant answered: its playing asks nobody.
 
     Attributes:

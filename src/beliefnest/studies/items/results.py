@@ -1,7 +1,6 @@
 """File of the results of a set, to which anybody can append those of further models."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -50,8 +49,7 @@ class ItemResult(msgspec.Struct, frozen=True):
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class PublishedSet:
+class PublishedSet(msgspec.Struct, frozen=True):
     """Public part of a set in a folder.
 
     Attributes:
@@ -139,8 +137,7 @@ def _replaced(line: bytes) -> tuple[str, str, str] | bytes:
     return result.digest, result.id, result.model
 
 
-@dataclass(frozen=True, slots=True)
-class CheckedResults:
+class CheckedResults(msgspec.Struct, frozen=True):
     """Result of checking a file of results.
 
     Attributes:

@@ -38,8 +38,7 @@ _FIRST = 20
 """Greatest number of draws for a valid scene of a scenario."""
 
 
-@dataclass(frozen=True, slots=True)
-class SearchReport:
+class SearchReport(msgspec.Struct, frozen=True):
     """Result of a search.
 
     Attributes:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
+
 from beliefnest.studies.counting import Pairs
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.space import CONDITION, ORDER, Contrast, ItemSpace, Questions
@@ -28,8 +30,7 @@ Ask = Callable[[Sequence[ItemRecord]], Sequence[bool]]
 """Function that asks a model items, and returns True for each right answer."""
 
 
-@dataclass(frozen=True, slots=True)
-class ItemPair:
+class ItemPair(msgspec.Struct, frozen=True):
     """Item, and its twin that differs in the level of one factor only.
 
     Attributes:
@@ -43,8 +44,7 @@ class ItemPair:
     easy: ItemRecord
 
 
-@dataclass(frozen=True, slots=True)
-class JudgedContrast:
+class JudgedContrast(msgspec.Struct, frozen=True):
     """Contrast on fresh pairs.
 
     Attributes:

@@ -2,7 +2,8 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from beliefnest.errors import ScenarioError
 from beliefnest.nest.face.nest import Nest

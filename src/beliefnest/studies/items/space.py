@@ -3,10 +3,13 @@
 import json
 import random
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document
@@ -29,8 +32,7 @@ FactorLevels = Mapping[str, Mapping[str, Any]]
 Questions = Sequence[ItemRecord | DroppedQuestion]
 
 
-@dataclass(frozen=True, slots=True)
-class Contrast:
+class Contrast(msgspec.Struct, frozen=True):
     """Level of a factor beside others of the same factor, all else the same.
 
     Attributes:

@@ -3,11 +3,11 @@
 import codecs
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, os_errors_of, read_regular
@@ -25,8 +25,7 @@ _IDS = ("participant", "cell", "question", "study")
 """Columns of ids, which spreadsheets may take for numbers or dates."""
 
 
-@dataclass(frozen=True, slots=True)
-class PersonAnswer:
+class PersonAnswer(msgspec.Struct, frozen=True):
     """Answer of one participant to one question.
 
     Attributes:

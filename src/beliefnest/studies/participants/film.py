@@ -3,7 +3,9 @@
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.still import draw_still
@@ -23,8 +25,7 @@ _CAPTION_MS = 700
 """Time to notice a new caption."""
 
 
-@dataclass(frozen=True, slots=True)
-class FilmFrame:
+class FilmFrame(msgspec.Struct, frozen=True):
     """Part of a film during which nothing changes.
 
     Attributes:
@@ -38,8 +39,7 @@ class FilmFrame:
     caption: str
 
 
-@dataclass(frozen=True, slots=True)
-class SceneFilm:
+class SceneFilm(msgspec.Struct, frozen=True):
     """Film of one simulator.
 
     Attributes:

@@ -1,7 +1,8 @@
 """Items that participants see: the cells of a study, without models, and their questions."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from beliefnest.plan.cells import digest
 from beliefnest.plan.scenario_cells import Cell
@@ -10,8 +11,7 @@ from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected_answers import Answers
 
 
-@dataclass(frozen=True, slots=True)
-class ItemQuestion:
+class ItemQuestion(msgspec.Struct, frozen=True):
     """Question of a probe, as participants answer it.
 
     Attributes:
@@ -30,8 +30,7 @@ class ItemQuestion:
         return f"{self.probe + 1}.{self.index + 1}"
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(msgspec.Struct, frozen=True):
     """Variation of a scenario under one condition, which a participant sees at most once.
 
     Attributes:

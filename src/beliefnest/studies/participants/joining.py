@@ -1,8 +1,11 @@
 """Joining of participants' answers to the cells of a study."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.llm.messages import Usage
@@ -32,8 +35,7 @@ class _PersonKey(CellKey):
     participant: str
 
 
-@dataclass(frozen=True, slots=True)
-class Sessions:
+class Sessions(msgspec.Struct, frozen=True):
     """Numbers of participants; all but `excluded` are of those who are not excluded.
 
     Attributes:
@@ -50,7 +52,7 @@ class Sessions:
     partial: int
     unanswered: int
     repeated: int
-    excluded: Mapping[str, int] = field(default_factory=dict)
+    excluded: Mapping[str, int] = msgspec.field(default_factory=dict)
 
 
 @dataclass

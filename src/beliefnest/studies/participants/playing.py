@@ -2,8 +2,9 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import InputError, ProgramError, ScenarioError
 from beliefnest.facts.states import StateFacts
@@ -26,8 +27,7 @@ STORY = "{{ branch | beginning }}\n\n{{ branch | story }}"
 """Text that the built-in template `story` shows to models, without the question."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParticipantView:
+class ParticipantView(msgspec.Struct, frozen=True):
     """View of one simulator, as participants get it.
 
     Attributes:
@@ -43,8 +43,7 @@ class ParticipantView:
     film: SceneFilm | None
 
 
-@dataclass(frozen=True, slots=True)
-class Judged:
+class Judged(msgspec.Struct, frozen=True):
     """Right answers and results of an item, by which answers are judged.
 
     Attributes:

@@ -3,9 +3,11 @@
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, get_args
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.plan.scenario_cells import Cell
@@ -41,8 +43,7 @@ ShownForm = Literal["film", "story", "both"]
 """Form in which participants get a scene."""
 
 
-@dataclass(frozen=True, slots=True)
-class Page:
+class Page(msgspec.Struct, frozen=True):
     """Page for participants that was written.
 
     Attributes:

@@ -1,7 +1,6 @@
 """Films as cells of a plan: each judged by the model, and by the model without a part."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import msgspec
@@ -17,8 +16,7 @@ FILM_KIND = suite_kind(
 )
 
 
-@dataclass(frozen=True)
-class FilmPlay:
+class FilmPlay(msgspec.Struct, frozen=True):
     """Film, judged once.
 
     Attributes:

@@ -1,7 +1,6 @@
 """One film: a floor with places, the path of an agent, and judgments of people."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import comb, prod
 from typing import Literal
 
@@ -23,8 +22,7 @@ NOTHING = "none"
 """Name for the content of a place without a goal."""
 
 
-@dataclass(frozen=True)
-class FilmParameters:
+class FilmParameters(msgspec.Struct, frozen=True):
     """Parameters of the model; the defaults are the published ones.
 
     Attributes:
@@ -39,7 +37,7 @@ class FilmParameters:
     """
 
     rewards: tuple[float, ...] = (-20, 0, 20, 40, 60, 80, 100)
-    rewards_by_goal: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    rewards_by_goal: Mapping[str, tuple[float, ...]] = msgspec.field(default_factory=dict)
     discount: float = 0.99
     step_cost: float = 1.0
     stay_cost: float = 0.0
@@ -52,8 +50,7 @@ class FilmParameters:
         return self.rewards_by_goal.get(goal, self.rewards)
 
 
-@dataclass(frozen=True)
-class Film:
+class Film(msgspec.Struct, frozen=True):
     """One film.
 
     Attributes:
@@ -84,8 +81,8 @@ class Film:
     path: tuple[FilmCell, ...]
     ended: bool
     scored: bool = True
-    people: Mapping[JudgedPart, Mapping[str, float]] = field(default_factory=dict)
-    errors: Mapping[JudgedPart, Mapping[str, float]] = field(default_factory=dict)
+    people: Mapping[JudgedPart, Mapping[str, float]] = msgspec.field(default_factory=dict)
+    errors: Mapping[JudgedPart, Mapping[str, float]] = msgspec.field(default_factory=dict)
     group: str = ""
 
     @property

@@ -3,12 +3,12 @@
 import itertools
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular

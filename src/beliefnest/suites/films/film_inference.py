@@ -1,10 +1,10 @@
 """Exact inference about the agents of films, which are acted out in nests."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from math import fsum
 from typing import Literal
 
+import msgspec
 import numpy as np
 
 from beliefnest.errors import InputError
@@ -33,8 +33,7 @@ _GOAL_BLOCKS = (
 _FLOOR, _WALL, _EMPTY = "stone", "stone", "gravel"
 
 
-@dataclass(frozen=True)
-class Judgment:
+class Judgment(msgspec.Struct, frozen=True):
     """Judgments of the model about a film.
 
     Attributes:

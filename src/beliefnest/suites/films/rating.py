@@ -4,9 +4,10 @@ The words describe one simulator: its known floor, and the perceived places of t
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from math import floor
+
+import msgspec
 
 from beliefnest.belief.view import State
 from beliefnest.llm.messages import Finish
@@ -33,8 +34,7 @@ _FACTORS: Mapping[JudgedPart, str] = {
 Ratings = Mapping[tuple[JudgedPart, str], float]
 
 
-@dataclass(frozen=True)
-class Comparison:
+class Comparison(msgspec.Struct, frozen=True):
     """Ratings beside exact inference.
 
     Attributes:

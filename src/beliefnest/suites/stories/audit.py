@@ -1,8 +1,10 @@
 """Audit of published text sets: labels that their own story contradicts, or does not determine."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from pathlib import Path
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular
@@ -27,8 +29,7 @@ _CLAIMS: Mapping[str, Callable[[Knowing], Knowing]] = {
 """Assumptions under which a label may be right, in words, and the rules that they change."""
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(msgspec.Struct, frozen=True):
     """Label that does not follow from its story.
 
     Attributes:
@@ -50,8 +51,7 @@ class Finding:
     assumption: str | None
 
 
-@dataclass(frozen=True, slots=True)
-class Audit:
+class Audit(msgspec.Struct, frozen=True):
     """Result of an audit.
 
     Attributes:

@@ -1,10 +1,11 @@
 """Stories as cells of a plan."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.messages import Sampling
@@ -18,8 +19,7 @@ from beliefnest.suites.stories.suite import JudgedAnswer, answer_story, asked_in
 STORY_KIND = suite_kind("stories", JudgedAnswer, ("suite", "claims", "order"), is_judged=True)
 
 
-@dataclass(frozen=True, slots=True)
-class StoryCell:
+class StoryCell(msgspec.Struct, frozen=True):
     """Story with its questions, played once and asked afterwards.
 
     Attributes:

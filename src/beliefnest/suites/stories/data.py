@@ -3,7 +3,6 @@
 import json
 import re
 from collections.abc import Collection
-from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
@@ -35,8 +34,7 @@ class _Published(msgspec.Struct):
 _EVERYTHING = Knowing()
 
 
-@dataclass(frozen=True, slots=True)
-class BatteryItem:
+class BatteryItem(msgspec.Struct, frozen=True):
     """Question and its expected answer.
 
     Attributes:
@@ -50,8 +48,7 @@ class BatteryItem:
     expected: str | None
 
 
-@dataclass(frozen=True, slots=True)
-class StoryItems:
+class StoryItems(msgspec.Struct, frozen=True):
     """Story and all its questions.
 
     Attributes:
@@ -65,8 +62,7 @@ class StoryItems:
     knowing: Knowing = _EVERYTHING
 
 
-@dataclass(frozen=True, slots=True)
-class Unread:
+class Unread(msgspec.Struct, frozen=True):
     """Part of a file that could not be read.
 
     Attributes:
@@ -87,8 +83,7 @@ class Unread:
         return tuple(f"{self.where}{self.joint}{fault}" for fault in self.faults)
 
 
-@dataclass(frozen=True, slots=True)
-class ReadStories:
+class ReadStories(msgspec.Struct, frozen=True):
     """Stories of a file, and the parts of it that could not be read."""
 
     stories: tuple[StoryItems, ...]

@@ -8,10 +8,10 @@ and has no other meaning. A sentence of another form is reported, never guessed.
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.world.texts import quoted
@@ -187,8 +187,7 @@ StoryEvent = (
 Sentence = StoryEvent | Absent | Returned | Present | Stayed
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
+class Line(msgspec.Struct, frozen=True):
     """Sentence and its place in the story.
 
     Attributes:

@@ -1,8 +1,12 @@
 """Playing of stories in a world, with a nest that tracks the beliefs."""
 
+import dataclasses
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.belief.grounds import Basis
 from beliefnest.errors import InputError, ProgramError
@@ -63,8 +67,7 @@ class StoryAnswer:
         return None if self.place is None else self.place.container
 
 
-@dataclass(frozen=True, slots=True)
-class Knowing:
+class Knowing(msgspec.Struct, frozen=True):
     """Rules by which agents of a story learn of events that they do not see.
 
     Attributes:
@@ -85,8 +88,7 @@ class Knowing:
 _KNOWING = Knowing()
 
 
-@dataclass(frozen=True, slots=True)
-class StoryReader:
+class StoryReader(msgspec.Struct, frozen=True):
     """Extractor of claims that gives the model the story's names of things and containers.
 
     Attributes:
@@ -337,4 +339,4 @@ def _perform(nest: Nest, programs: Mapping[str, str], where: str) -> None:
 def _in_words_alone(story: Story) -> Story:
     """Return the story without the claims beside utterances, so that only the words remain."""
     acts = (replace(act, is_claimed=False) if isinstance(act, Tell) else act for act in story.acts)
-    return replace(story, acts=tuple(acts))
+    return dataclasses.replace(story, acts=tuple(acts))

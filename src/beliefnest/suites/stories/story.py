@@ -5,9 +5,10 @@ thing is taken out of the container it is in. It knows nothing of beliefs.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.suites.stories.grammar import (
@@ -45,23 +46,20 @@ _ROOM = "room"
 """Room of a story that names none."""
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Place:
+class Place(msgspec.Struct, frozen=True, order=True):
     """Container in a room; other rooms may have containers of the same name."""
 
     room: str
     container: str
 
 
-@dataclass(frozen=True, slots=True)
-class HandOver:
+class HandOver(msgspec.Struct, frozen=True):
     """Hands of an agent."""
 
     agent: str
 
 
-@dataclass(frozen=True, slots=True)
-class Come:
+class Come(msgspec.Struct, frozen=True):
     """Agents enter a room at the same time.
 
     Attributes:
@@ -75,16 +73,14 @@ class Come:
     shuts: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Go:
+class Go(msgspec.Struct, frozen=True):
     """Agents leave all rooms, through shut doors as in `Come`."""
 
     agents: tuple[str, ...]
     shuts: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Move:
+class Move(msgspec.Struct, frozen=True):
     """An agent takes a thing from one place to another."""
 
     agent: str
@@ -93,8 +89,7 @@ class Move:
     target: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Take:
+class Take(msgspec.Struct, frozen=True):
     """An agent takes a thing out of a place into its hands."""
 
     agent: str
@@ -102,8 +97,7 @@ class Take:
     source: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Put:
+class Put(msgspec.Struct, frozen=True):
     """An agent puts a thing out of its hands into a place."""
 
     agent: str
@@ -111,16 +105,14 @@ class Put:
     target: Place
 
 
-@dataclass(frozen=True, slots=True)
-class LookInto:
+class LookInto(msgspec.Struct, frozen=True):
     """An agent opens a container and looks into it."""
 
     agent: str
     place: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Tell:
+class Tell(msgspec.Struct, frozen=True):
     """An agent says something with a claim.
 
     Attributes:

@@ -1,7 +1,7 @@
 """Suites: answer all questions of a file of stories, and score the answers."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import msgspec
@@ -48,8 +48,7 @@ class JudgedAnswer(msgspec.Struct, frozen=True):
     unread: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Score:
+class Score(msgspec.Struct, frozen=True):
     """Score of some answers.
 
     Attributes:

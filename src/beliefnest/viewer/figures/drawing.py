@@ -1,8 +1,9 @@
 """Scenes and figures of simulators, for `pictures`."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError

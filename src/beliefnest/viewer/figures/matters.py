@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import groupby, zip_longest
 from typing import Protocol, TypeVar
 
+import msgspec
 import numpy as np
 
 from beliefnest.belief.grounds import PerceivedEvent
@@ -111,8 +112,7 @@ class Contained(_Amounts):
         return claim.item is not None and claim.cell == self.container
 
 
-@dataclass(frozen=True, slots=True)
-class Carried:
+class Carried(msgspec.Struct, frozen=True):
     """Places of an item: containers and agents.
 
     Attributes:
@@ -162,8 +162,7 @@ class Carried:
         return claim.item == self.item
 
 
-@dataclass(frozen=True, slots=True)
-class BlockAt:
+class BlockAt(msgspec.Struct, frozen=True):
     """Block at a position, for example a door that is open or shut, or a sign with its text.
 
     Attributes:
@@ -238,8 +237,7 @@ class OwnedCount(_Amounts):
         return False
 
 
-@dataclass(frozen=True, slots=True)
-class AgentPlace:
+class AgentPlace(msgspec.Struct, frozen=True):
     """Position of an agent.
 
     Attributes:

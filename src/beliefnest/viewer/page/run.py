@@ -1,8 +1,10 @@
 """Run as the page's data: everything at first, then the updates."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
+
+from msgspec.structs import asdict
 
 from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.nest.face.reader import Reader

@@ -6,6 +6,8 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
+import msgspec
+
 from beliefnest.errors import InputError, StoreError
 from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineKey
@@ -14,8 +16,7 @@ from beliefnest.viewer.page.run import About, RunData
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 
 
-@dataclass(frozen=True, slots=True)
-class OpenRun:
+class OpenRun(msgspec.Struct, frozen=True):
     """Run that is open for reading.
 
     Attributes:

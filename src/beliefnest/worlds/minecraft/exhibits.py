@@ -5,8 +5,9 @@ happens in it by itself, and no act of visitors reaches a simulator.
 """
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any, Self
+
+import msgspec
 
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Items, Position
@@ -27,8 +28,7 @@ ExhibitContents = tuple[Items, bool]
 """Known items of a container, and whether they are all."""
 
 
-@dataclass(frozen=True, eq=False)
-class Shown:
+class Shown(msgspec.Struct, frozen=True, eq=False):
     """Content of an exhibit.
 
     Attributes:
@@ -72,8 +72,7 @@ class Shown:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class Plot:
+class Plot(msgspec.Struct, frozen=True):
     """Place of an exhibit.
 
     Attributes:

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError, BodyError
 from beliefnest.world.claims import Claim, claims_from_plain

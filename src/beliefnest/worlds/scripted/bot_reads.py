@@ -1,8 +1,9 @@
 """Reads of programs of the scripted world: of their bot, of other agents, of blocks."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Position, block_at
@@ -17,8 +18,7 @@ _TRUTH = {"true": True, "false": False}
 """Values of properties that Minecraft's data have as booleans; all others are texts."""
 
 
-@dataclass(frozen=True, slots=True)
-class BotBody:
+class BotBody(msgspec.Struct, frozen=True):
     """Agent's body, as a program holds it.
 
     Attributes:
@@ -28,8 +28,7 @@ class BotBody:
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class OpenWindow:
+class OpenWindow(msgspec.Struct, frozen=True):
     """Contents of a container, or of the bot's inventory.
 
     Attributes:

@@ -3,10 +3,11 @@
 import atexit
 import hashlib
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from beliefnest.files import read_regular, replace_file
 
@@ -15,8 +16,7 @@ _RESERVED = 96 << 20
 """Addresses reserved for the memory of an interpreter, which is never larger."""
 
 
-@dataclass(frozen=True, slots=True)
-class Compiled:
+class Compiled(msgspec.Struct, frozen=True):
     """Module, compiled for this machine.
 
     Attributes:

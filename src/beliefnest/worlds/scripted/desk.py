@@ -6,8 +6,9 @@ that no program can change it. Thus both worlds check by the same code.
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.worlds.scripted.interpreter import GuestError, Interpreter
 from beliefnest.worlds.scripted.sandbox_parts import parts
@@ -25,8 +26,7 @@ class TooIntricateError(Exception):
     """A request took more than the desk can do; only texts made for that do."""
 
 
-@dataclass(frozen=True, slots=True)
-class Prepared:
+class Prepared(msgspec.Struct, frozen=True):
     """Program that is ready to run.
 
     Attributes:
@@ -40,8 +40,7 @@ class Prepared:
     marks: int
 
 
-@dataclass(frozen=True, slots=True)
-class DeskFacts:
+class DeskFacts(msgspec.Struct, frozen=True):
     """Facts of a world that checks of arguments need.
 
     Attributes:

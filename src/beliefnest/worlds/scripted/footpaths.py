@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterable
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
@@ -29,8 +29,7 @@ _MOST_WAYS = 20_000
 """Largest number of paths that a ground caches."""
 
 
-@dataclass(frozen=True, slots=True)
-class Near:
+class Near(msgspec.Struct, frozen=True):
     """Goal of standing within a distance of a block.
 
     Attributes:
@@ -46,8 +45,7 @@ class Near:
         return math.dist(cell, self.block) <= self.within
 
 
-@dataclass(frozen=True, slots=True)
-class InReach:
+class InReach(msgspec.Struct, frozen=True):
     """Goal of standing where a hand is near enough to a block; `Ground.meets` tests free lines.
 
     Attributes:
@@ -249,8 +247,7 @@ class Ground:
         return len(self._areas) - 1
 
 
-@dataclass(frozen=True, eq=False)
-class _Area:
+class _Area(msgspec.Struct, frozen=True, eq=False):
     """Cells that can be reached from one cell.
 
     Attributes:

@@ -8,8 +8,9 @@ import math
 from collections import deque
 from collections.abc import Callable, Generator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field
 from typing import Any
+
+import msgspec
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
@@ -42,8 +43,7 @@ class SkillError(BeliefNestError):
         self.reason = reason
 
 
-@dataclass(frozen=True)
-class Hand:
+class Hand(msgspec.Struct, frozen=True):
     """Agent that acts in a scripted world.
 
     Attributes:
@@ -69,9 +69,9 @@ class Hand:
     signs: Callable[[], Mapping[Position, str]]
     ground: Callable[[], Ground]
     speech_ticks: int = 0
-    mouth: list[object] = field(default_factory=list)
-    uttered: list[int] = field(default_factory=list)
-    news: list[Announcement] = field(default_factory=list)
+    mouth: list[object] = msgspec.field(default_factory=list)
+    uttered: list[int] = msgspec.field(default_factory=list)
+    news: list[Announcement] = msgspec.field(default_factory=list)
     stride: Callable[[], int] = lambda: 1
 
     def reach(self, place: Position, *, beside: bool = False) -> InReach:
@@ -150,8 +150,7 @@ def walk_to_use(hand: Hand, place: Position) -> Doing:
     hand.check_touch(place, "the block")
 
 
-@dataclass(frozen=True, slots=True)
-class Doors:
+class Doors(msgspec.Struct, frozen=True):
     """Treatment of doors and gates that can be moved by hand.
 
     Attributes:

@@ -10,8 +10,9 @@ tenth of the time.
 import re
 from collections import deque
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.skills.calls import CLAIM_CALLS
 from beliefnest.skills.javascript import parsed
@@ -46,8 +47,7 @@ class _OtherProgramError(Exception):
     """A part of a program is no call of a skill with literal values."""
 
 
-@dataclass(frozen=True, slots=True)
-class LiteralCall:
+class LiteralCall(msgspec.Struct, frozen=True):
     """Call of a skill, or of `bot.openContainer` for the block at a place.
 
     Attributes:

@@ -1,8 +1,9 @@
 """Requests of programs of the scripted world, and the errors that answer them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.skills.manifests import skills
 from beliefnest.worlds.protocol import Fault
@@ -11,8 +12,7 @@ _NEAR = 1_000_000
 """Coordinates below this are in the world; the desk looks at others."""
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
+class Request(msgspec.Struct, frozen=True):
     """Call of a program.
 
     Attributes:

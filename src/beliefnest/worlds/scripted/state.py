@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
+
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.owned import Barred

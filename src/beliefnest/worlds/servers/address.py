@@ -1,10 +1,12 @@
 """Addresses of Minecraft servers: `minecraft://HOST:PORT?option=value&...`."""
 
 import re
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
+
+import msgspec
+from msgspec.structs import asdict
 
 from beliefnest.errors import InputError
 
@@ -37,8 +39,7 @@ def overwriting(world: str) -> str:
     return f"{world}{'&' if '?' in world else '?'}overwrite=yes"
 
 
-@dataclass(frozen=True, slots=True)
-class ServerAddress:
+class ServerAddress(msgspec.Struct, frozen=True):
     """Address of a Minecraft server, with options of playing on it.
 
     Attributes:

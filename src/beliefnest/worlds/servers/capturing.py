@@ -1,11 +1,11 @@
 """Capture of existing places: on a Minecraft server, or in a file of the game or of WorldEdit."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.double_chests import holds_items
@@ -31,8 +31,7 @@ Unknown = Literal["refuse", "air"]
 _Placed = tuple[int, int, int]
 
 
-@dataclass(frozen=True)
-class Captured:
+class Captured(msgspec.Struct, frozen=True):
     """Place as it was found.
 
     Attributes:

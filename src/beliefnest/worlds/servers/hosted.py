@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
 from typing import Self
+
+from msgspec.structs import replace
 
 from beliefnest.errors import BodyError
 from beliefnest.worlds.minecraft.channel import Channel

@@ -1,8 +1,10 @@
 """Address on which people join the embedded world in real time: `embedded://HOST:PORT`."""
 
-from dataclasses import asdict, dataclass
 from typing import Any
 from urllib.parse import urlsplit
+
+import msgspec
+from msgspec.structs import asdict
 
 from beliefnest.errors import InputError
 
@@ -21,8 +23,7 @@ def is_hosted(world: str) -> bool:
     return world.startswith(f"{_SCHEME}://")
 
 
-@dataclass(frozen=True, slots=True)
-class ListenAddress:
+class ListenAddress(msgspec.Struct, frozen=True):
     """Address on which an embedded world in real time listens.
 
     Attributes:

@@ -51,8 +51,7 @@ class GroupKey(Key):
         return self.instance
 
 
-@dataclass(frozen=True)
-class GroupCell:
+class GroupCell(msgspec.Struct, frozen=True):
     """Group of siblings, to be played by all that a certificate compares.
 
     `search` of the order and of one order less play the first instance; rules and courses play
@@ -123,8 +122,7 @@ def _open(view: AgentView, order: int) -> Iterator[str]:
         yield program_of([call])
 
 
-@dataclass(frozen=True)
-class GroupFolder:
+class GroupFolder(msgspec.Struct, frozen=True):
     """Folder with a file for the results of each cell.
 
     Attributes:

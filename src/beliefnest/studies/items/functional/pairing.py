@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,8 +28,7 @@ Outcomes = Mapping[int, Sequence[bool]]
 """Right or wrong by instance, for each repeat."""
 
 
-@dataclass(frozen=True, slots=True)
-class LiteralFunctionalPair:
+class LiteralFunctionalPair(msgspec.Struct, frozen=True):
     """Outcomes of a model on the same instances of a family.
 
     Attributes:

@@ -1,10 +1,11 @@
 """Families of functional items, and their siblings: instances that look the same to an agent."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.task import Task
@@ -19,8 +20,7 @@ from beliefnest.studies.episode_design import EpisodeDesign
 from beliefnest.world.texts import quoted
 
 
-@dataclass(frozen=True)
-class TaskFamily:
+class TaskFamily(msgspec.Struct, frozen=True):
     """A task file under one condition.
 
     Attributes:
