@@ -126,9 +126,7 @@ class FileEditor:
                 f"{_LARGEST:,}: edit the file as text, or a smaller box"
             )
         # Nobody joins here: people stand where the file puts them.
-        alone = dataclasses.replace(
-            source, setting=dataclasses.replace(source.setting, people=frozenset())
-        )
+        alone = dataclasses.replace(source, setting=replace(source.setting, people=frozenset()))
         with Nest.open(alone, world="scripted") as nest:
             about = About(title=source.name, labels=source.labels)
             scene = RunData(nest.reader, about, 0).update()
