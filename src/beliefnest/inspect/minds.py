@@ -209,7 +209,7 @@ def like_inference() -> Scorer:
     """Score 1 less the mean absolute error of the ratings against exact inference."""
     courses = _Courses()
 
-    async def judge(state: TaskState, answer: str, finish: Finish) -> Score:
+    async def score(state: TaskState, answer: str, finish: Finish) -> Score:
         reading, match = await run_sync(courses.compared, state.metadata, answer, finish)
         lines = [f"{about}: {_pairs_text(pairs)}" for about, pairs in match.pairs.items()]
         outcome = "rated" if reading.outcome == "read" else reading.row_outcome
@@ -226,7 +226,7 @@ def like_inference() -> Scorer:
             },
         )
 
-    return answer_scorer(judge)
+    return answer_scorer(score)
 
 
 def _pairs_text(pairs: Any) -> str:

@@ -95,7 +95,7 @@ def _sample(
 def story_answer() -> Scorer:
     """Score an answer by the expected container; explain the belief of the nest."""
 
-    async def judge(state: TaskState, answer: str, finish: Finish) -> Score:
+    async def score(state: TaskState, answer: str, finish: Finish) -> Score:
         reading = read_answer(answer, state.metadata["options"], finish)
         ok = reading.option == state.target.text
         outcome = reading.row_outcome
@@ -107,7 +107,7 @@ def story_answer() -> Scorer:
             ok=ok, answer=reading.option, lines=[*head, "", *lines], metadata={"outcome": outcome}
         )
 
-    return answer_scorer(judge)
+    return answer_scorer(score)
 
 
 def _explanation(sample: dict[str, object]) -> tuple[str, ...]:

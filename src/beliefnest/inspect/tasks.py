@@ -122,7 +122,7 @@ def in_the_belief() -> Scorer:
     """Score an answer: run its program in the belief it is meant for, or judge its words."""
     stage = ScenarioStage()
 
-    async def judge(state: TaskState, answer: str, finish: Finish) -> Score:
+    async def score(state: TaskState, answer: str, finish: Finish) -> Score:
         judged = await run_sync(stage.judged, state.metadata, answer, finish)
         outcome = judged.outcome
         probe_report = probe_json(outcome, "")
@@ -136,4 +136,4 @@ def in_the_belief() -> Scorer:
             metadata={"outcome": outcome.outcome, **{key: probe_report[key] for key in _KEPT}},
         )
 
-    return answer_scorer(judge)
+    return answer_scorer(score)
