@@ -57,17 +57,17 @@ def _unanswered(error: BaseException | None) -> str | None:
     return None if error is None or isinstance(error, NOT_ASKED) else str(error)
 
 
-def answer_scorer(score: Callable[[TaskState, str, Finish], Awaitable[Score]]) -> Scorer:
+def answer_scorer(scored: Callable[[TaskState, str, Finish], Awaitable[Score]]) -> Scorer:
     """Return a scorer of samples, of which those without an answer are wrong.
 
     Args:
-        score: Function that scores an answer, given with the reason for its end.
+        scored: Function that scores an answer, given with the reason for its end.
     """
 
     async def score(state: TaskState, target: Target) -> Score:
         reason = state.metadata.get(_NO_ANSWER)
         if reason is None:
-            return await score(state, state.output.completion, finish_of(state.output))
+            return await scored(state, state.output.completion, finish_of(state.output))
         lines = [f"{_NO_ANSWER}: {reason}"]
         return score_of(ok=False, answer=None, lines=lines, metadata={"outcome": _NO_ANSWER})
 
