@@ -93,6 +93,17 @@ def test_lists_that_cannot_be_balanced_are_told_with_a_table(tmp_path):
         square(tmp_path, [["apple", 2, 6], ["bone", 6, 2]]).plan()
 
 
+def test_power_needs_no_lists_that_are_alike(tmp_path, monkeypatch):
+    alternating = [["apple", 2, 6], ["bone", 6, 2], ["clock", 2, 6], ["egg", 6, 2]]
+    planned, new = square(tmp_path, alternating), square(tmp_path, alternating)
+    planned.plan()
+    # To balance lists, every scene is played.
+    monkeypatch.setattr(bn.Nest, "play", None)
+    with pytest.raises(TypeError):
+        square(tmp_path, alternating).plan()
+    assert new.power_sources() == planned.power_sources()
+
+
 def test_what_was_warned_of_stands_below_the_table(tmp_path, capsys):
     values = [["apple", 2, 6], ["bone", 6, 2]]
     square(tmp_path, values)

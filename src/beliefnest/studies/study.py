@@ -241,7 +241,8 @@ class Study:
                 self._plan = self._planned(on_item or _say_nothing_of_items)
         return self._plan
 
-    def _planned(self, on_item: OnItem) -> Plan[Cell] | Plan[EpisodeCell]:
+    def _planned(self, on_item: OnItem, *, lists: bool = True) -> Plan[Cell] | Plan[EpisodeCell]:
+        """Return the plan; without `lists`, those of a Latin square are not balanced."""
         design = self._design
         if not isinstance(design, Design):
             for player in design.players:
@@ -251,7 +252,7 @@ class Study:
         plan = plan_cells(
             design, self._documents, lambda done, total: on_item("checked variations", done, total)
         )
-        if design.design == "latin-square":
+        if lists and design.design == "latin-square":
             plan = with_balanced_lists(plan)
         if design.balance:
             self._made = made_items(plan.cells, self._documents, on_item)
@@ -276,7 +277,10 @@ class Study:
     @property
     def columns(self) -> tuple[str, ...]:
         """Return names of the table's columns, see `StudyResult.frame`; raise as `plan` does."""
-        varied = variation_columns({"cells": [cell.plain() for cell in self.plan().cells]})
+        return self._columns(self.plan())
+
+    def _columns(self, plan: Plan[Cell] | Plan[EpisodeCell]) -> tuple[str, ...]:
+        varied = variation_columns({"cells": [cell.plain() for cell in plan.cells]})
         return tuple(self._kind.table.kinds(varied))
 
     def run(
@@ -528,12 +532,15 @@ class Study:
         between: str | None = None,
     ) -> list[tuple[str, VariationSource]]:
         """Return the groups of planned rows that `power` simulates; raise as `power` does."""
-        plan = self._plan_json(self.plan())
+        # Balancing plays every scene, and changes no number of rows.
+        with self._naming():
+            planned = self._plan or self._planned(_say_nothing_of_items, lists=False)
+        plan, names = self._plan_json(planned), self._columns(planned)
         rows = list(self._kind.table.planned(plan))
-        varied = {name for name in self.columns if len({row[name] for row in rows}) > 1}
+        varied = {name for name in names if len({row[name] for row in rows}) > 1}
         if between is None:
             between = next((name for name in self._kind.table.compared if name in varied), None)
-        elif between not in varied or between not in self.columns:
+        elif between not in varied:
             raise InputError(
                 f"{quoted(between)} does not vary in this study; name a column that does"
             )
