@@ -15,6 +15,7 @@ from beliefnest.studies.checking import (
     checked_lists,
     is_count,
 )
+from beliefnest.studies.episode_rows import policy_named
 from beliefnest.world.texts import quoted
 from beliefnest.worlds.names import check_world
 
@@ -192,13 +193,6 @@ def _with_query(policies: str | Mapping[str, str], query: str) -> str | Mapping[
     if isinstance(policies, str):
         return with_query(policies, query)
     return {agent: with_query(policy, query) for agent, policy in policies.items()}
-
-
-def policy_named(player: str, order: str) -> str:
-    """Return a player's policy as the command line takes it; an empty order adds nothing."""
-    if (player, order) == ("search", "omniscient"):
-        return "omniscient:search"
-    return f"{player}:{order}" if order else player
 
 
 def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:

@@ -3,8 +3,14 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from beliefnest.studies.episode_design import policy_named
 from beliefnest.studies.table import Column, ColumnType, Table, lost, of_key, of_result, plain_value
+
+
+def policy_named(player: str, order: str) -> str:
+    """Return a player's policy as the command line takes it; an empty order adds nothing."""
+    if (player, order) == ("search", "omniscient"):
+        return "omniscient:search"
+    return f"{player}:{order}" if order else player
 
 
 def _results(cell: Mapping[str, Any], content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
