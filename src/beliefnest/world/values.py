@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import PositionError
 from beliefnest.world.event_kinds import EventKind
@@ -143,17 +144,8 @@ class AgentState(msgspec.Struct, frozen=True):
     food: float = 20.0
 
     def moved(self, position: Point, yaw: float, pitch: float) -> "AgentState":
-        """Return the agent at another pose; three times as fast as `dataclasses.replace`."""
-        return AgentState(
-            position,
-            yaw,
-            pitch,
-            self.on_ground,
-            self.equipment,
-            self.inventory,
-            self.health,
-            self.food,
-        )
+        """Return the agent at another pose."""
+        return replace(self, position=position, yaw=yaw, pitch=pitch)
 
 
 class DroppedItem(msgspec.Struct, frozen=True):
