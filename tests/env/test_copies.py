@@ -44,7 +44,8 @@ FORMS: dict[str, dict[str, Any]] = {
 def hall(form: str, **options: Any) -> Any:
     """Return an environment of a hall in which Ann and Bob cannot see each other at first."""
     scene = {**HALL, "episode": EPISODE} if form == "task" else HALL
-    return parallel_env(bn.Scenario.from_mapping(scene), max_steps=9, **FORMS[form], **options)
+    made = {"max_steps": 9, **FORMS[form], **options}
+    return parallel_env(bn.Scenario.from_mapping(scene), **made)
 
 
 def played(env: Any, steps: int) -> bytes:
@@ -139,6 +140,33 @@ def test_what_cannot_be_saved_or_restored_is_refused() -> None:
             pickle.dumps(env)
         env.reset(seed=0)
         env.save()
+
+
+@pytest.mark.parametrize("other", [{"step_ticks": 7}, {"agents": ["ann"]}, {"max_steps": 8}])
+def test_an_episode_of_an_environment_that_is_made_otherwise_is_refused(other: Any) -> None:
+    with closing(hall("task")) as env, closing(hall("task", **other)) as foreign:
+        env.reset(seed=3)
+        env.step({})
+        foreign.reset(seed=4)
+        foreign.step({})
+        tick = foreign.nest.tick
+        with pytest.raises(bn.InputError, match="the saved episode of hall began in another way"):
+            foreign.restore(env.save())
+        assert (foreign.nest.tick, foreign.save().seed) == (tick, 4)
+        # What agents are told and how they say what they do may differ.
+        with closing(hall("task", nested=["/ann/bob"], actions="skills")) as alike:
+            alike.restore(env.save())
+            assert alike.nest.tick == env.nest.tick
+
+
+def test_a_file_of_the_same_name_with_other_contents_is_another_scenario() -> None:
+    moved = copy.deepcopy(HALL)
+    moved["containers"][0]["items"] = {"emerald": 1}
+    one, other = (bn.Scenario.from_mapping(each) for each in (HALL, moved))
+    with closing(parallel_env(one)) as env, closing(parallel_env(other)) as foreign:
+        env.reset(seed=0)
+        with pytest.raises(bn.InputError, match="began in another way"):
+            foreign.restore(env.save())
 
 
 @pytest.mark.parametrize("path", ["/", "/ann", "/ann/bob"])

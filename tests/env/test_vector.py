@@ -45,9 +45,13 @@ def test_copies_tell_the_same_in_two_processes_as_in_one() -> None:
         for seed in (None, 50):
             again = [env.reset(seed=seed, options={"reset_mask": mask}) for env in (one, two)]
             np.testing.assert_equal(*again)
-        # Wrong input of a step leaves all processes as they were.
-        with pytest.raises(bn.InputError, match="is not in the action space"):
-            two.step(np.full(two.num_envs, 10**6))
+        # Wrong input of a step leaves all copies and processes as they were.
+        actions = np.zeros(two.num_envs, int)
+        actions[-1] = 10**6
+        for env in (one, two):
+            with pytest.raises(bn.InputError, match="in copy 2 is not in the action space"):
+                env.step(actions)
+        np.testing.assert_equal(*(env.step(actions * 0) for env in (one, two)))
         assert alive(two) == [True, True]
         with pytest.raises(bn.InputError, match="the copies are in other processes"):
             _ = two.envs

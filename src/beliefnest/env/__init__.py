@@ -104,14 +104,16 @@ def parallel_env(
     if agents is not None and not agents:
         raise InputError("agents is empty; name agents that act, or leave it out for all")
     made, described, _ = _classes()
+    from beliefnest.env.options import texts
+
     options = described(
         world=world,
         actions=actions,
         observations=observations,
-        agents=None if agents is None else tuple(agents),
-        nested=nested if isinstance(nested, int) else tuple(nested),
+        agents=None if agents is None else texts("agents", agents),
+        nested=nested if isinstance(nested, int) else texts("nested", nested),
         phrases=phrases,
-        items=tuple(items),
+        items=texts("items", items),
         cells=tuple(cells),
         sizes=dict(sizes or {}),
         reward=reward,

@@ -1,5 +1,6 @@
 """Scenario as a multi-agent environment with PettingZoo's parallel interface."""
 
+import hashlib
 import math
 import sys
 from collections.abc import Mapping, Sequence
@@ -43,6 +44,7 @@ from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError, PathError, UnknownNameError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.history import context_of
+from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.owned import Owned
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.skills.calls import Call
@@ -92,6 +94,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     def __init__(self, source: Scenario | Instances, options: EnvironmentOptions) -> None:
         self._source, self._options = source, options
+        self._origins: dict[int, str] = {}
         self._task: Task | None = None
         players: Sequence[str] = ()
         if isinstance(source, Instances):
@@ -239,11 +242,16 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:
         """Return the space of an agent's observations; the same object on each call."""
-        return self._spaces[agent][0]
+        return self._space(agent, 0)
 
     def action_space(self, agent: str) -> spaces.Space[Any]:
         """Return the space of an agent's actions; the same object on each call."""
-        return self._spaces[agent][1]
+        return self._space(agent, 1)
+
+    def _space(self, agent: str, which: int) -> spaces.Space[Any]:
+        if agent not in self._spaces:
+            raise InputError(f"{agent!r} does not act here; agents are {self.possible_agents}")
+        return self._spaces[agent][which]
 
     @property
     def state_space(self) -> spaces.Space[Any]:
@@ -389,13 +397,15 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
                 "the world was changed by hand, which no saved episode can repeat: save before, or "
                 "let agents act in place of it"
             )
-        return SavedEpisode(self._named, self._seed, tuple(self._played))
+        return SavedEpisode(
+            self._named, self._origin(self._task, self._seed), self._seed, tuple(self._played)
+        )
 
     def restore(self, saved: SavedEpisode) -> tuple[dict[str, Any], dict[str, Infos]]:
         """Play a saved episode again up to where it was saved; return what agents were told then.
 
         Raises:
-            InputError: The episode is not one of this environment.
+            InputError: The episode is not one of this environment; the current one continues.
             BodyError: The Minecraft side failed.
         """
         if not isinstance(saved, SavedEpisode) or saved.scenario != self._named:
@@ -403,6 +413,14 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             raise InputError(
                 f"{name!r} is not an episode of {self._named}; give what save() returned"
             )
+        task = self._instance(saved.seed)
+        if saved.origin != self._origin(task, saved.seed):
+            raise InputError(
+                f"the saved episode of {self._named} began in another way: its agents, its world, "
+                "its parameters, the lengths of its steps or its file differ; restore it in an "
+                "environment that is made as the one that saved it"
+            )
+        self._task, self._drawn = task, saved.seed
         latest = self.reset(saved.seed)
         for chosen in saved.steps:
             latest = self._play(chosen)
@@ -432,10 +450,9 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """Open the nest of an episode; return the executor of its actions."""
         chosen, source = self._options, self._source
         if isinstance(source, Instances):
-            # Read a file once for an episode that is played again, as after `restore`.
-            if self._task is None or self._drawn != self._seed:
-                self._task, self._drawn = source.of(self._seed), self._seed
-            task = self._task
+            task = self._instance(self._seed)
+            assert task is not None  # a scenario has none
+            self._task, self._drawn = task, self._seed
             self._arrange(task.scenario)
             self._bounds.check(self.layout)
             learners = self.possible_agents
@@ -450,6 +467,29 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             speech = source.setting.perception.speech_ticks
             return SkillActing(nest, chosen.step_ticks, timeout, senses, speech)
         return ProgramActing(nest, timeout, senses)
+
+    def _instance(self, seed: int) -> Task | None:
+        """Return the instance of a seed, the latest one without reading it; None: no task."""
+        source = self._source
+        if isinstance(source, Scenario) or self._drawn == seed:
+            return self._task
+        return source.of(seed)
+
+    def _origin(self, task: Task | None, seed: int) -> str:
+        """Return a digest of what the episode of a seed begins from."""
+        if seed not in self._origins:
+            self._origins = {seed: self._new_origin(task)}
+        return self._origins[seed]
+
+    def _new_origin(self, task: Task | None) -> str:
+        options, source = self._options, self._source if task is None else task.scenario
+        assert isinstance(source, Scenario)  # instances have a task
+        setting = source.setting
+        lengths = (options.step_ticks, options.max_steps, options.timeout_ticks)
+        chosen = [self.possible_agents, *lengths, options.plays_script, options.senses]
+        # Copies of a form are equal and have the same text, but other JSON: a default is left out.
+        rules = repr([*chosen, None if task is None else task.form]).encode()
+        return hashlib.sha256(encode_start(setting, options.world) + rules).hexdigest()
 
     def _declared(self, agent: str) -> Sequence[str]:
         """Return the items that an agent knows by the rules: those named, and those of goals."""

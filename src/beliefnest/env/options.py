@@ -1,6 +1,6 @@
 """Options of environments, and their checks."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Literal
 
 import msgspec
@@ -56,16 +56,16 @@ class EnvironmentOptions(msgspec.Struct, frozen=True):
         env_seed(self.seed)
         if isinstance(self.nested, int) and (isinstance(self.nested, bool) or self.nested < 0):
             raise InputError(f"nested is {self.nested!r}; give paths, or a depth from 0 on")
-        for name, texts in (("phrases", self.phrases), ("items", self.items)):
-            if isinstance(texts, str) or not all(isinstance(each, str) for each in texts):
-                raise InputError(f"{name} is {texts!r:.100}; give a list of texts")
+        texts("phrases", list(self.phrases) if isinstance(self.phrases, Mapping) else self.phrases)
+        if self.agents is not None and len(set(self.agents)) < len(self.agents):
+            raise InputError(f"agents is {list(self.agents)}; name each agent once")
         if faults := list(filter(None, map(fault_of, self.phrases))):
             raise InputError(f"phrases has {faults[0]}")
         counts = ("max_steps", "step_ticks", "timeout_ticks")
         for name in counts:
             number = getattr(self, name)
-            if number is not None and (not isinstance(number, int) or number < 1):
-                raise InputError(f"{name} is {number!r}; it must be at least 1, or None")
+            if number is not None and (type(number) is not int or number < 1):
+                raise InputError(f"{name} is {number!r}; give a whole number from 1 on, or None")
         for name, function in (("reward", self.reward), ("ends", self.ends)):
             if function is not None and not callable(function):
                 raise InputError(f"{name} is {function!r}; give a function, or None")
@@ -100,6 +100,14 @@ class EnvironmentOptions(msgspec.Struct, frozen=True):
         if isinstance(self.phrases, Mapping):
             return self.phrases
         return dict.fromkeys(self.phrases, ())
+
+
+def texts(name: str, values: object) -> tuple[str, ...]:
+    """Return the texts that an argument lists; raise InputError for a text alone and for others."""
+    listed = None if isinstance(values, str) or not isinstance(values, Iterable) else tuple(values)
+    if listed is None or not all(isinstance(each, str) for each in listed):
+        raise InputError(f"{name} is {values!r:.100}; give a list of texts")
+    return listed
 
 
 def env_seed(seed: object) -> int:

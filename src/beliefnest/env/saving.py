@@ -31,11 +31,14 @@ class SavedEpisode(msgspec.Struct, frozen=True):
 
     Attributes:
         scenario: Name of the scenario or task.
+        origin: Digest of what the episode began from: the instance, and the options that change
+            what happens.
         seed: Seed of the episode.
         steps: Choices by agent in each joint step.
     """
 
     scenario: str
+    origin: str
     seed: int
     steps: tuple[Mapping[str, Choice], ...]
 

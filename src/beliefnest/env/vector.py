@@ -216,9 +216,15 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
                 f"step got {counted(len(each_row), 'action')}; give {len(self.rows)}, one for each "
                 "agent of each copy"
             )
-        for (number, agent), action in zip(self.rows, each_row, strict=True):
-            chosen.setdefault(number, {})[agent] = action
         over = {number for (number, _), each in self._latest.items() if each.is_over}
+        for (number, agent), action in zip(self.rows, each_row, strict=True):
+            # Checked before a copy is stepped, so that none is ahead of the others.
+            if number not in over and not self.single_action_space.contains(action):
+                raise InputError(
+                    f"{action!r:.100} of {agent} in copy {number} is not in the action space; "
+                    "nothing was done"
+                )
+            chosen.setdefault(number, {})[agent] = action
         return self._advance(
             {each: self._seeds[each] if each in over else chosen[each] for each in chosen}
         )
