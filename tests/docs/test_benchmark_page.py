@@ -28,7 +28,7 @@ def test_the_page_leads_to_a_released_set(
     trial, *later = map(shlex.split, commands)
     assert run_command_line(trial) == 0
     if not NIGHTLY:
-        # What the trial shows needs all scenes, and other tests make smaller sets again.
+        # The trial needs all scenes; the commands after it make smaller sets again.
         Path("study.yaml").write_text(FEWER, encoding="utf-8")
         later = [each for each in later if "--verify" not in each]
     for command in later:

@@ -153,7 +153,7 @@ def test_an_episode_of_an_environment_that_is_made_otherwise_is_refused(other: A
         with pytest.raises(bn.InputError, match="the saved episode of hall began in another way"):
             foreign.restore(env.save())
         assert (foreign.nest.tick, foreign.save().seed) == (tick, 4)
-        # What agents are told and how they say what they do may differ.
+        # Other observations and another form of actions change nothing of what happens.
         with closing(hall("task", nested=["/ann/bob"], actions="skills")) as alike:
             alike.restore(env.save())
             assert alike.nest.tick == env.nest.tick

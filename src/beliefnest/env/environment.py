@@ -198,8 +198,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         Raises:
             InputError: No episode has begun, or the agent cannot act.
         """
-        if agent not in self.possible_agents:
-            raise InputError(f"{agent!r} does not act here; agents are {self.possible_agents}")
+        self._check_actor(agent)
         if agent not in self._orders:
             raise InputError("no episode has begun; call reset() first")
         return self._orders[agent].things
@@ -242,16 +241,17 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:
         """Return the space of an agent's observations; the same object on each call."""
-        return self._space(agent, 0)
+        self._check_actor(agent)
+        return self._spaces[agent][0]
 
     def action_space(self, agent: str) -> spaces.Space[Any]:
         """Return the space of an agent's actions; the same object on each call."""
-        return self._space(agent, 1)
+        self._check_actor(agent)
+        return self._spaces[agent][1]
 
-    def _space(self, agent: str, which: int) -> spaces.Space[Any]:
-        if agent not in self._spaces:
+    def _check_actor(self, agent: str) -> None:
+        if agent not in self.possible_agents:
             raise InputError(f"{agent!r} does not act here; agents are {self.possible_agents}")
-        return self._spaces[agent][which]
 
     @property
     def state_space(self) -> spaces.Space[Any]:
