@@ -49,7 +49,7 @@ function meter (bytes, { stackBytes, initialPages }) {
     [SECTION.global, appended(sections.get(SECTION.global), [counter(MAX_I32), counter(0)])],
     [SECTION.export, appended(sections.get(SECTION.export),
       [exported('fuel', KIND.global, plan.fuel), exported('depth', KIND.global, plan.depth), exported('table', KIND.table, 0)])],
-    [SECTION.code, writeVector(bodies.map((body) => [...unsigned(body.length), ...body]))]
+    [SECTION.code, writeVector(bodies.flatMap((body) => [Uint8Array.from(unsigned(body.length)), body]), bodies.length)]
   ])
   return assemble(bytes, replaced)
 }

@@ -74,9 +74,9 @@ function unsigned (value) {
   return bytes
 }
 
-/** Return a vector: the count, then the entries (arrays of bytes). @returns {Buffer} */
-function writeVector (entries) {
-  return Buffer.concat([Uint8Array.from(unsigned(entries.length)), ...entries.map((entry) => Uint8Array.from(entry))])
+/** Return a vector: the count, then the bytes of its entries in pieces. @returns {Buffer} */
+function writeVector (pieces, count) {
+  return Buffer.concat([Uint8Array.from(unsigned(count)), ...pieces])
 }
 
 /** Return a section: id, length, content. @returns {Buffer} */

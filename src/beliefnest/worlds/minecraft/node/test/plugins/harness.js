@@ -7,9 +7,17 @@ const clock = new Clock('')
 installTime(clock)
 require('../../src/prepare').prepare()
 const { Vec3 } = require('vec3')
-const { RequestHandler } = require('../../src/requestHandler')
+const { rememberBlocks } = require('../../src/blocks')
+const { Regions } = require('../../src/regions/regions')
+const { createServer } = require('../../src/server')
+const { Random } = require('../../src/time/random')
+const versions = require('../../src/versions')
 const { agent, floor, BOX } = require('../harness')
 const { everything } = require('./everything')
+
+const registry = require('prismarine-registry')(versions.minecraft)
+registry.loadDimensionCodec(registry.loginPacket.dimensionCodec)
+rememberBlocks(registry)
 
 const FLOOR = BOX[0][1] + 1
 const LIMIT = 2000
@@ -21,10 +29,9 @@ const LIMIT = 2000
  */
 async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks = [], containers = [], box = BOX }, body) {
   const frames = []
-  const handler = new RequestHandler(clock, ({ frame }) => frames.push(frame))
-  await handler.perform({ op: 'hello', protocol: 6, seed: 0, minecraft: '1.20.4' })
-  const { regions } = handler
-  const { serv } = regions
+  clock.root.random = new Random('0')
+  const serv = createServer(registry)
+  const regions = new Regions(serv, clock, frame => frames.push(frame), () => {})
   const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
   await regions.create({
     region: 'test', seed: 'test', box, tick: 0, blocks: floor(states, box), containers, agents, items: {}, internal_state: null

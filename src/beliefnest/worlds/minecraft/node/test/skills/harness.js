@@ -14,6 +14,8 @@ const { scopeOf } = require('../../src/scope')
 const { agent, BOX } = require('../harness')
 
 const FLOOR = BOX[0][1] + 1
+// Compiled once for all worlds.
+const sandbox = createSandbox()
 
 /**
  * Run `body(world)` in a world with a stone floor; see embedded.js for a world's members.
@@ -49,7 +51,6 @@ function programsOf ({ bots, nextTick }, emitted) {
     bodies: { rest: async (_, name) => stopBot(bots[name]), stand: async () => true, async finish () {} },
     clock: { advance: nextTick }
   }
-  const sandbox = createSandbox()
   const runner = new Runner(regions, request => sandbox.run(request), scopeOf)
   return async (programs, timeoutTicks = 2000) => {
     const { results } = await runner.run('', programs, timeoutTicks)
