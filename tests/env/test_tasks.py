@@ -148,6 +148,22 @@ def test_seeds_of_a_file_are_its_instances_and_parameters_can_be_given(tmp_path:
         assert {place for seed in range(4) for place in full(env, seed)} == {tuple(spots[1])}
 
 
+@pytest.mark.parametrize(("agent", "ticks"), [("ann", 2), ("bob", 3)])
+def test_a_skill_in_rounds_of_one_tick_takes_as_long_as_in_a_long_one(
+    agent: str, ticks: int
+) -> None:
+    """Ann reaches the chest, Bob walks a cell; each opens it and takes, in a tick each."""
+    env = parallel_env(bn.Scenario.from_mapping(HALL), step_ticks=1, max_steps=9, agents=[agent])
+    env.reset(seed=0)
+    take = env.action("getItemFromChest", container=tuple(CHEST), item="diamond")
+    *_, infos = env.step({agent: take})
+    while env.agents and infos[agent]["busy"]:
+        *_, infos = env.step({})
+    assert env.nest["/"].state.agents[agent].inventory == {"diamond": 1}
+    assert env.nest.tick == ticks
+    env.close()
+
+
 class Fetches:
     """Policy that takes the diamond in its second round."""
 

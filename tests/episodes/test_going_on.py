@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from tests.shared_worlds import WORLDS
 
@@ -55,12 +56,25 @@ def test_a_program_goes_on_where_it_was_cut(world: str) -> None:
         assert [part.decisions["ann"].goes_on for part in cut.parts][:2] == [False, True]
 
 
-def test_it_takes_as_long_as_if_it_had_not_been_cut() -> None:
-    with played(200) as whole, played(7) as cut:
+@pytest.mark.parametrize("round_ticks", [1, 7])
+def test_it_takes_as_long_as_if_it_had_not_been_cut(round_ticks: int) -> None:
+    with played(200) as whole, played(round_ticks) as cut:
         assert whole.play().success
         assert cut.play().success
         assert cut.ticks == whole.ticks
         assert cut.nest["/"].state.chat == whole.nest["/"].state.chat
+
+
+@pytest.mark.parametrize("skill", ["say(bot, 'It is here.')", "waitForChat(bot, 20)"])
+def test_what_takes_longer_than_a_round_in_one_place_ends_all_the_same(skill: str) -> None:
+    content = msgspec.to_builtins(errand(6).form)
+    content["scenario"]["perception"] = {"speech_ticks": 20}
+    code = f"await {skill}; await goToPosition(bot, new Vec3(6, 1, 5), 0)"
+    with bn.Episode(bn.Task.from_mapping(content), {"ann": Program(code)}) as episode:
+        assert [part.ended["ann"].how for part in episode.play(5).parts] == [*["cut"] * 4, "ok"]
+        # 20 ticks of the skill, then a cell a tick.
+        places = [episode.nest.at(t)["/"].state.agents["ann"].position for t in (20, 21, 28)]
+        assert places == [(1.5, 1, 1.5), (2.5, 1, 2.5), (6.5, 1, 5.5)]
 
 
 def test_one_that_goes_on_is_resumed_forked_and_replayed(tmp_path: Path) -> None:

@@ -94,7 +94,8 @@ class Called(msgspec.Struct, frozen=True):
         name: Name of the skill or method.
         given: Arguments as JSON.
         answer: Result as JSON: `{"ok", "value"}`; None if the call had not finished.
-        ticks: Number of ticks for which an unfinished call had run; 0 if it has finished.
+        ticks: Number of ticks that an unfinished call had run, as far as they count when it goes
+            on.
         since: Tick of the call.
     """
 
@@ -109,7 +110,8 @@ class ProgramPast(msgspec.Struct, frozen=True):
     """Record of a program up to its interruption, with which it can be resumed.
 
     The program's text runs again. Calls that had finished return their recorded results without
-    being executed again; an unfinished call begins anew. As soon as the program makes another call
+    being executed again; an unfinished call begins anew. Waits go on, and in the scripted world
+    also what takes more than all ticks in one place. As soon as the program makes another call
     than recorded, because it reads another world now, its calls are executed normally.
 
     Attributes:

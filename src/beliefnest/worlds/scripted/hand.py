@@ -57,6 +57,7 @@ class Hand(msgspec.Struct, frozen=True):
         mouth: Utterances that it is about to make, in order.
         uttered: Ticks of its latest utterances.
         news: Events of its bot about what it perceived, in the latest tick, but did not see.
+        walks: Ticks at which it set out.
         stride: Function that returns the number of ticks, from the current one on, in which nothing
             but this agent acts and nobody watches. Steps of so many ticks are taken at once, and
             the walk then yields the number of ticks to skip.
@@ -72,6 +73,7 @@ class Hand(msgspec.Struct, frozen=True):
     mouth: list[object] = msgspec.field(default_factory=list)
     uttered: list[int] = msgspec.field(default_factory=list)
     news: list[Announcement] = msgspec.field(default_factory=list)
+    walks: list[int] = msgspec.field(default_factory=list)
     stride: Callable[[], int] = lambda: 1
 
     def reach(self, place: Position, *, beside: bool = False) -> InReach:
@@ -211,6 +213,7 @@ def walk(hand: Hand, target: Point, goal: WalkGoal, what: str, doors: Doors = _A
     moved = False
     bumped: set[Position] = set()
     while not hand.has_reached(goal):
+        hand.walks.append(hand.world.now)
         way = _way(hand, goal, doors, bumped)
         if way is None:
             far = math.dist(hand.feet, target)

@@ -52,12 +52,9 @@ class Memory:
         reply = json.loads(answer)
         return reply["ok"], reply["value"]
 
-    def left(self, number: int, args: list[Any]) -> list[Any]:
-        """Return the arguments of an interrupted call; a wait continues with the ticks left."""
-        entry = self._entries[number]
-        if entry.call.name != _WAITS or not entry.before:
-            return args
-        return [max(0, args[0] - entry.before)]
+    def done(self, number: int) -> int:
+        """Return the ticks of an interrupted call that need not pass again."""
+        return self._entries[number].before
 
     def answered(self, number: int, *, ok: bool, value: object) -> None:
         """Record the result of a call."""
@@ -65,13 +62,23 @@ class Memory:
         answer = json.dumps({"ok": ok, "value": value})
         entry.call = replace(entry.call, answer=answer)
 
-    def calls(self, tick: int) -> tuple[Called, ...]:
-        """Return all calls, as of a tick; empty if there are too many."""
+    def calls(self, first: int, tick: int, *, walked: bool) -> tuple[Called, ...]:
+        """Return all calls, as of a tick; empty if there are too many.
+
+        An interrupted wait goes on. So does what takes more than all ticks in the same place, which
+        would otherwise never end. Other interrupted calls begin anew.
+
+        Args:
+            first: Tick at which the program began or went on.
+            tick: The present tick.
+            walked: True if the agent has walked since then.
+        """
         if len(self._entries) > _MOST:
             return ()
         return tuple(
-            entry.call
-            if entry.call.answer is not None
-            else replace(entry.call, ticks=entry.before + tick - entry.begun)
+            replace(entry.call, ticks=entry.before + tick - entry.begun)
+            if entry.call.answer is None
+            and (entry.call.name == _WAITS or (entry.begun == first and not walked))
+            else entry.call
             for entry in self._entries.values()
         )

@@ -32,12 +32,13 @@ _ENDS_WITH_PROGRAM = SKILLS.keys() - UTTERANCES
 
 @dataclass
 class _Run:
-    """Running program."""
+    """Running program; `late` has the ticks, by call, that passed before an interruption."""
 
     hand: Hand
     program: JavaScriptProgram | LiteralProgram
     sense: SenseSource
     doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
+    late: dict[int, int] = field(default_factory=dict)
     memory: Memory = field(default_factory=Memory)
     read: Sensed | None = None
     missed: tuple[Announcement, ...] = ()
@@ -251,7 +252,8 @@ def _act(run: _Run) -> list[tuple[int, bool, object]]:
         if run.program.ended and name in _ENDS_WITH_PROGRAM:
             continue
         try:
-            next(doing)
+            for _ in range(1 + run.late.pop(number, 0)):
+                next(doing)
         except StopIteration as end:
             ended.append((number, True, end.value))
         except BeliefNestError as error:
@@ -296,9 +298,12 @@ def _begin(run: _Run, request: Request) -> None:
         run.program.fail(number, request.error)
         return
     try:
-        doing = _DOINGS[name](run.hand, *run.memory.left(number, request.checked))
+        walks = len(run.hand.walks)
+        doing = _DOINGS[name](run.hand, *request.checked)
         next(doing)
         run.doing[number] = (name, doing)
+        if len(run.hand.walks) == walks:
+            run.late[number] = run.memory.done(number)
     except StopIteration as ended:
         _answer(run, number, ok=True, value=ended.value)
     except BeliefNestError as error:
@@ -340,5 +345,7 @@ def _result(
             )
         ),
         aims=tuple(run.aims),
-        calls=run.memory.calls(run.end_tick or first) if remembers else (),
+        calls=run.memory.calls(first, run.end_tick or first, walked=bool(run.hand.walks))
+        if remembers
+        else (),
     )
