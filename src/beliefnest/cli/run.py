@@ -182,16 +182,17 @@ def _failures(cells: Sequence[RunCell], results: StudyFolder) -> list[dict[str, 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
     try:
         with naming_other_kinds(options.scenario):
-            return _loaded(options.scenario, options.condition or ())
+            return conditions_of(options.scenario, options.condition or ())
     except ScenarioError:
         # An interrupted run continues with the scenario file that its folder keeps.
         kept = kept_scenario_file(options.out, options.scenario)
         if kept is None:
             raise
-    return _loaded(str(kept), options.condition or ())
+    return conditions_of(str(kept), options.condition or ())
 
 
-def _loaded(name_or_path: str, conditions: Sequence[int]) -> tuple[Scenario, ...]:
+def conditions_of(name_or_path: str, conditions: Sequence[int]) -> tuple[Scenario, ...]:
+    """Return a scenario under some of its conditions; no numbers: under all of them."""
     if not conditions:
         return Scenario.load_all(name_or_path)
     return tuple(Scenario.load(name_or_path, number) for number in dict.fromkeys(conditions))

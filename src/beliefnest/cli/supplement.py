@@ -1,28 +1,32 @@
 """`beliefnest reproduce SUPPLEMENT`: play a study or run again without models, and compare."""
 
-import contextlib
-import io
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from msgspec.structs import replace
+
 from beliefnest.cli.console import print_report, progress_on
-from beliefnest.cli.options import RunOptions
-from beliefnest.cli.run import run_scenarios
+from beliefnest.cli.gallery import Gallery, RunResults
+from beliefnest.cli.run import conditions_of
+from beliefnest.cli.run_cells import plan_run_cells
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError
-from beliefnest.files import replace_file
-from beliefnest.llm.stored_exchange import encode_exchange
+from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.recorded_models import ReplayModel, replaying
 from beliefnest.nest.past.versions import own_versions
-from beliefnest.plan.jobs import StudyProgress
+from beliefnest.plan.jobs import OnStudyProgress, StudyProgress, run_cells
+from beliefnest.plan.worker import Worker
 from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.archive import damaged_files, unpack
 from beliefnest.studies.bundling import opened
 from beliefnest.studies.comparing import ERROR, PairedDifference, differing_contents
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
-from beliefnest.studies.methods import facts_of
+from beliefnest.studies.kinds import RUN_KIND
 from beliefnest.studies.reproducing import (
     Reproduction,
     check_templates,
@@ -30,14 +34,15 @@ from beliefnest.studies.reproducing import (
     differing_table,
     reproduce_study,
 )
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.world.words import counted
+from beliefnest.worlds.minecraft.launching import ahead
 from beliefnest.worlds.names import is_address
 
 _MOST_TOLD = 20
-_OF_MACHINE = ("seconds", "run_dir", "key", "model", "table")
-"""Keys of results that differ between machines, name the model that replays answers, or repeat
-other keys for people."""
+_OF_MACHINE = ("seconds", "run_dir", "key", "table")
+"""Keys of results that differ between machines, or repeat other keys for people."""
 
 
 def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: bool) -> int:
@@ -79,8 +84,7 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
                 on_progress("playing", progress.done + progress.failed, progress.total)
 
             if result.folder.of == "run":
-                on_progress("playing", 0, 0)
-                reproduction = _reproduce_run(result, again, trust=trust)
+                reproduction = _reproduce_run(result, again, told, trust=trust)
             else:
                 reproduction = reproduce_study(folder, again, jobs, told, trust=trust)
         differences = [*damaged, *reproduction.differences]
@@ -162,86 +166,55 @@ def _other_versions(recorded: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     }
 
 
-def _reproduce_run(result: StudyRecord, again: Path, *, trust: bool) -> Reproduction:
-    """Run the conditions of a run again, with its recorded answers, and compare the results."""
-    folder, settings = result.folder.path, result.plan["cells"][0]["key"]["setting"]
+def _reproduce_run(
+    result: StudyRecord, again: Path, on_progress: OnStudyProgress, *, trust: bool
+) -> Reproduction:
+    """Play the cells of a run again, with its recorded answers, and compare the results."""
+    folder, settings = result.folder, result.plan["cells"][0]["key"]["setting"]
     check_trust(_code_of(result), trust=trust)
-    models = _replaying(result, again.with_name("answers"))
     if is_address(settings["world"]):
         raise InputError(
-            f"{folder} was run in the world {settings['world']}, which is in real time and cannot "
-            f"be repeated; runs in other worlds can"
+            f"{folder.path} was run in the world {settings['world']}, which is in real time and "
+            f"cannot be repeated; runs in other worlds can"
         )
-    system = None
-    if "system" in settings:
-        system = again.with_name("system.txt")
-        replace_file(system, str(settings["system"]))
-    options = RunOptions(
-        scenario=str(folder / "scenario.yaml"),
-        condition=list(settings["conditions"]),
-        world=settings["world"],
-        models=",".join(models[name] for name in settings["models"]),
-        repeat=settings["repeat"],
-        out=again,
-        seed=settings["seed"],
-        cache="off",
-        attempts=settings["attempts"],
-        temperature=settings["temperature"],
-        claims_from=models.get(settings.get("claims_from", "")),
-        json=True,
-        # Limits of time have no effect on recorded answers.
-        system=system,
-        skills=settings.get("skills"),
-        max_output_tokens=settings.get("max_output_tokens"),
-    )
-    # The result is in the folder's cells, so that the command's print is dropped.
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(ModelError):
-        run_scenarios(options)
-    ended = [cell for cell, content in _contents(result) if content["error"] is None]
+    scenarios = conditions_of(str(folder.path / "scenario.yaml"), settings["conditions"])
+    place = StudyFolder.open(again, RUN_KIND)
+    terms = replace(place.terms(RunLimits(None, None)), models=_replaying(folder, settings))
+    worker = partial(Worker, seed=settings["seed"], caught=ModelError)
+    with closing(Gallery()) as gallery:
+        cells = plan_run_cells(scenarios, settings, again, (), gallery)
+        results = RunResults(again, RUN_KIND, gallery)
+        run_cells(cells, results, terms, 1, "loky", on_progress, ahead, worker)
+    before = [folder.cell(cell["name"]) for cell in result.plan["cells"]]
+    ended = [
+        (cell["name"], content, place.cell(now.key.name))
+        for cell, content, now in zip(result.plan["cells"], before, cells, strict=True)
+        if content is not None and content["error"] is None
+    ]
     return Reproduction(
         cells=len(ended),
-        left_out=len(result.plan["cells"]) - len(ended),
+        left_out=len(before) - len(ended),
         rows=sum(row["outcome"] != "error" for row in result.rows),
-        differences=(
-            *differing_table(result),
-            *_differences(result, StudyRecord.read(again), models),
-        ),
+        differences=(*differing_table(result), *_differences(ended)),
     )
 
 
-def _replaying(result: StudyRecord, folder: Path) -> dict[str, str]:
-    """Return by name of a model the model that replays its answers, from files that are written."""
-    folder.mkdir(parents=True, exist_ok=True)
-    models = {"offline": "offline"}
-    exchanges = result.folder.exchanges()
-    for number, name in enumerate(each.name for each in facts_of(result).models):
-        if name != "offline":
-            file = folder / f"{number}.jsonl"
-            own = [encode_exchange(each) for each in exchanges if each.model == name]
-            replace_file(file, b"".join(line + b"\n" for line in own))
-            models[name] = f"replay:{file}"
-    return models
-
-
-def _contents(run: StudyRecord) -> Iterator[tuple[Mapping[str, Any], Mapping[str, Any]]]:
-    """Yield the cells that were tried, each with the content of its file."""
-    for cell in run.plan["cells"]:
-        content = run.folder.cell(cell["name"])
-        if content is not None:
-            yield cell, content
+def _replaying(folder: StudyFolder, settings: Mapping[str, Any]) -> dict[str, ReplayModel]:
+    """Return the models that replay the answers of those of a run, by name."""
+    names = {*settings["models"], settings.get("claims_from", "offline")} - {"offline"}
+    exchanges = folder.exchanges()
+    return {
+        name: replaying(name, (each for each in exchanges if each.model == name)) for name in names
+    }
 
 
 def _differences(
-    recorded: StudyRecord, again: StudyRecord, models: Mapping[str, str]
+    ended: Sequence[tuple[str, Mapping[str, Any], Mapping[str, Any] | None]],
 ) -> Iterator[PairedDifference]:
-    def key(cell: Mapping[str, Any], model: str) -> tuple[Any, ...]:
-        return cell["key"]["condition"], cell["seed"], model
-
-    after = {key(cell, cell["key"]["model"]): content for cell, content in _contents(again)}
-    for cell, before in _contents(recorded):
-        where = f"cells/{cell['name']}.json"
-        now = after.get(key(cell, models[cell["key"]["model"]]), {})
-        if before["error"] is None and now.get("error") is not None:
+    for name, before, now in ended:
+        where = f"cells/{name}.json"
+        assert now is not None
+        if now["error"] is not None:
             yield PairedDifference(where, ERROR, None, now["error"])
-        elif before["error"] is None:
+        else:
             yield from differing_contents(before, now, where, _OF_MACHINE)

@@ -1,7 +1,7 @@
 """Models whose answers come from a file: written by hand, or recorded in an earlier run."""
 
 from collections import defaultdict, deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -113,12 +113,19 @@ def load_replay(name: str, path: Path) -> ReplayModel:
         ModelError: The file cannot be read.
         InputError: A line is not an exchange.
     """
-    recorded: defaultdict[_Question, deque[Exchange]] = defaultdict(deque)
+    exchanges = []
     for number, line in enumerate(_content(name, path).splitlines(), start=1):
         try:
-            exchange = decode_exchange(line)
+            exchanges.append(decode_exchange(line))
         except msgspec.MsgspecError as error:
             raise InputError(f"{path}, line {number}, is not a recorded answer: {error}") from None
+    return replaying(name, exchanges)
+
+
+def replaying(name: str, exchanges: Iterable[Exchange]) -> ReplayModel:
+    """Return a model that gives the answers of exchanges, in their order."""
+    recorded: defaultdict[_Question, deque[Exchange]] = defaultdict(deque)
+    for exchange in exchanges:
         recorded[exchange.messages].append(exchange)
     return ReplayModel(name, dict(recorded))
 
