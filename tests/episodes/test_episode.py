@@ -36,10 +36,10 @@ class Fails:
 def facts_of(episode: bn.Episode) -> list[object]:
     """All that happened, tick by tick, in reality and in everybody's belief."""
     nest = episode.nest
-    paths = ["/", *(f"/{name}" for name in nest.agents)]
+    paths = [(), *((name,) for name in nest.agents)]
     return [
-        (tick, {path: repr(state) for path, state in states.items()})
-        for tick, states in nest.each_tick(paths, -1, nest.tick)
+        (entry.tick, {path: repr(state) for path, state in states().items()})
+        for entry, states in nest.each_entry(paths, -1, nest.tick)
     ]
 
 

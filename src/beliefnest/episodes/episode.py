@@ -488,7 +488,7 @@ class Episode:
                 nest.play()
                 if self._reads:
                     # Forests are begun one for each node that is asked for alone.
-                    nest.states([*self._reads, *self._watching.paths])
+                    nest.states([*self._reads, *map(path_text, self._watching.paths)])
                 if not self._people:
                     look_around(nest)
                 plain, task_seed = self.task.plain(), self.task.seed

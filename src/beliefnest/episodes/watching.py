@@ -1,15 +1,17 @@
 """Tracking of an episode's goals, tick by tick."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 from beliefnest.belief.view import State
 from beliefnest.episodes.task import Task
-from beliefnest.facts.states import looking_at
+from beliefnest.facts.states import StateFacts
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.over_time import TickWalk
 from beliefnest.scenarios.goals import Progress
+from beliefnest.timeline.journal import Edit, Entry
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.values import Items, Point
 
 
 class Watch:
@@ -40,29 +42,70 @@ class Watch:
         }
         named = {path for goal in goals.values() for path in goal.paths}
         self._limits_messages = any(goal.messages is not None for goal in goals.values())
-        self.paths = sorted({"/", *map(path_text, named)})
+        self.paths: Sequence[BeliefPath] = sorted({(), *named})
+        # What the conditions have read of reality the last time, and the agents' items now.
+        self._met: Sequence[Sequence[bool]] = ()
+        self._places: set[str] = set()
+        self._items: dict[str, Items | None] = {}
 
     def up_to_now(self, nest: Nest) -> Mapping[str, Progress]:
         """Return the progress of all goals up to the nest's tick."""
         if self._seen < nest.tick:
             if self._seen < self._start:
-                self._feed(self._start, nest.at(self._start))
+                past = nest.at(self._start)
+                self._test({path: past[path_text(path)].state for path in self.paths})
+                self._feed(self._start)
                 self._seen = self._start
-            for tick, states in nest.each_tick(self.paths, self._seen, nest.tick, self._walk):
-                self._feed(tick, states)
-                del states  # what somebody holds is read before the next tick
+            for entry, states in nest.each_entry(self.paths, self._seen, nest.tick, self._walk):
+                if self._matters(entry):
+                    self._test(states())
+                self._feed(entry.tick, self._said(entry))
             self._seen = nest.tick
         return self.progress
 
-    def _feed(self, tick: int, states: Any) -> None:
-        views: dict[BeliefPath, State] = {}
-        for path in self.paths:
-            view = states[path]
-            views[tuple(name for name in path.split("/") if name)] = getattr(view, "state", view)
-        look = looking_at(views)
-        said = 0
-        if tick != self._start and self._limits_messages:
-            chat = views[()].chat
-            said = sum(1 for when, who, _ in chat if when == tick and who in self._players)
-        for each in self._distinct:
-            each.feed(tick, look, said)
+    def _matters(self, entry: Entry) -> bool:
+        """Return True if conditions may hold differently after an entry.
+
+        Most entries are steps of agents, and most conditions are about things.
+        """
+        if isinstance(entry, Edit):
+            return len(self.paths) > 1 or bool(entry.blocks or entry.containers)
+        agents = entry.agents.items()
+        items = {name: None if state is None else state.inventory for name, state in agents}
+        took = any(self._items.get(name) != each for name, each in items.items())
+        self._items.update(items)
+        return (
+            len(self.paths) > 1
+            or took
+            or bool(entry.blocks or entry.containers or entry.items)
+            or not self._places.isdisjoint(entry.agents)
+            or any("text" in event.detail for event in entry.events)
+        )
+
+    def _test(self, states: Mapping[BeliefPath, State]) -> None:
+        self._places.clear()
+        facts = {path: _Read(state, self._places) for path, state in states.items()}
+        self._met = [each.goal.met(facts.__getitem__) for each in self._distinct]
+
+    def _said(self, entry: Entry) -> int:
+        """Return the number of utterances of players in an entry, if a goal limits it."""
+        if not self._limits_messages or isinstance(entry, Edit):
+            return 0
+        said = (event.actor for event in entry.events if event.kind is EventKind.CHAT)
+        return sum(speaker in self._players for speaker in said)
+
+    def _feed(self, tick: int, said: int = 0) -> None:
+        for each, met in zip(self._distinct, self._met, strict=True):
+            each.feed(tick, met, said)
+
+
+class _Read(StateFacts):
+    """Facts of a state that note whose places were read."""
+
+    def __init__(self, state: State, places: set[str]) -> None:
+        super().__init__(state)
+        self._places = places
+
+    def feet_of(self, agent: str) -> Point | None:
+        self._places.add(agent)
+        return super().feet_of(agent)

@@ -126,8 +126,3 @@ class StateFacts(ViewFacts):
             for place, content in contents
             if all(content.items.get(name, 0) >= count for name, count in items.items())
         ]
-
-
-def looking_at(states: Mapping[BeliefPath, "State"]) -> Look:
-    """Return a function that looks up facts in states by path."""
-    return lambda path: StateFacts(states[path])

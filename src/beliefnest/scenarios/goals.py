@@ -35,6 +35,10 @@ class Goal(msgspec.Struct, frozen=True):
         """Return all conditions of the goal."""
         return (*self.reach, *self.never)
 
+    def met(self, look: Look) -> Sequence[bool]:
+        """Return for each condition whether it holds."""
+        return [condition.holds(look) for condition in self.conditions]
+
     def differs(self, other: "Goal") -> bool:
         """Return True if each of the two goals contains a condition that the other does not."""
         mine, theirs = self._wanted, other._wanted
@@ -87,17 +91,16 @@ class Progress:
         """Return the progress of a goal at its start."""
         return cls(goal, start, {})
 
-    def feed(self, tick: int, look: Look, messages: int) -> None:
+    def feed(self, tick: int, are_met: Sequence[bool], messages: int) -> None:
         """Update the progress with a tick; after a violation, update `first` only.
 
         Args:
             tick: The tick.
-            look: States at the tick.
+            are_met: Whether each condition of the goal holds at the tick.
             messages: Number of utterances of players in the tick, if the goal limits it.
         """
         if self.reached is not None:
             return
-        are_met = [condition.holds(look) for condition in self.goal.conditions]
         for number, holds in enumerate(are_met):
             if holds:
                 self.first.setdefault(number, tick)

@@ -20,15 +20,16 @@ from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import Past
 from beliefnest.nest.face.simulator import Simulator
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.past.over_time import TickWalk, each_tick
+from beliefnest.nest.past.over_time import StatesAfter, TickWalk, each_entry
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.unique import unique_items
 from beliefnest.owned import is_own
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
+from beliefnest.timeline.journal import Entry
 from beliefnest.timeline.run_records import Senses
 from beliefnest.world.nameable import ClaimsFrom
-from beliefnest.world.paths import parse_path
+from beliefnest.world.paths import BeliefPath, parse_path
 from beliefnest.world.seeds import checked_seed
 from beliefnest.world.values import TICKS_PER_SECOND, Position
 from beliefnest.worlds.by_name import Worlds, open_world
@@ -300,25 +301,25 @@ class Nest(NestBase):
         """Store bytes in the run under a name, and replace those stored before."""
         self._recording.records.put_state(f"kept {name}", value)
 
-    def each_tick(
-        self, paths: Sequence[str], after: int, until: int, walk: TickWalk | None = None
-    ) -> Iterator[tuple[int, Mapping[str, State]]]:
-        """Yield each tick of the real world's timeline with an entry, with several states.
+    def each_entry(
+        self, paths: Sequence[BeliefPath], after: int, until: int, walk: TickWalk | None = None
+    ) -> Iterator[tuple[Entry, StatesAfter]]:
+        """Yield each entry of the real world's timeline with a function that returns states.
 
-        The simulators follow the real world. Read their states before asking for the next tick.
+        The simulators follow the real world. Entries whose states nobody asks for cost little.
 
         Args:
-            paths: Belief paths of the simulators.
+            paths: The simulators.
             after: Last tick to leave out.
             until: Last tick to yield.
             walk: Place up to which the caller has read these simulators; None: none was read.
+
+        Yields:
+            An entry, and a function that returns the states after it. Call it, and read what it
+            returns, before you ask for the next entry.
         """
-        parsed = {path: parse_path(path, self.agents) for path in paths}
         with self._recording.turn:
-            wanted = list(dict.fromkeys(parsed.values()))
-            for tick, states in each_tick(self._recording, wanted, after, until, walk):
-                yield tick, {path: states[names] for path, names in parsed.items()}
-                del states  # what somebody holds is read before the next tick
+            yield from each_entry(self._recording, paths, after, until, walk)
 
     def play(self, on_progress: OnProgress | None = None) -> None:
         """Play the scenario's script in the real world, from the first step that was not played.

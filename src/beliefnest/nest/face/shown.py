@@ -17,7 +17,7 @@ from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.made_claims import MadeClaim, claims_made
 from beliefnest.nest.face.given import tick_of
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.past.over_time import each_tick
+from beliefnest.nest.past.over_time import each_entry
 from beliefnest.nest.past.percepts import percepts_of
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
@@ -108,7 +108,8 @@ class ShownSimulator(ABC):
         start, end = recording.moment(path, tick_of(since)), recording.moment(path, self._tick)
         if path:
             return [percept.tick for percept, _ in percepts_of(recording, path, start, end)]
-        return [start.tick, *(t for t, _ in each_tick(recording, [path], start.tick, end.tick))]
+        entries = each_entry(recording, [path], start.tick, end.tick)
+        return [start.tick, *(entry.tick for entry, _ in entries)]
 
     @property
     def tick(self) -> int:

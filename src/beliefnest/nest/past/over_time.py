@@ -1,7 +1,8 @@
 """States of simulators over time, on every timeline that they have or can follow."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import msgspec
 
@@ -11,7 +12,7 @@ from beliefnest.errors import InputError
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.timeline_state import TimelineState
-from beliefnest.timeline.journal import TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
@@ -72,6 +73,10 @@ def _check_first(state: State) -> None:
         )
 
 
+StatesAfter = Callable[[], Mapping[BeliefPath, State]]
+"""Function that returns states after an entry."""
+
+
 @dataclass(slots=True)
 class TickWalk:
     """Place in a timeline up to which somebody has read the states of the same simulators.
@@ -95,38 +100,47 @@ class TickWalk:
         return self.forest
 
 
-def each_tick(
+def each_entry(
     recording: Recording,
     paths: Sequence[BeliefPath],
     after: int,
     until: int,
     walk: TickWalk | None = None,
-) -> Iterator[tuple[int, Mapping[BeliefPath, State]]]:
-    """Yield each tick with an entry, with the states of several simulators below the real world.
+) -> Iterator[tuple[Entry, StatesAfter]]:
+    """Yield each entry below the real world with a function that returns several states after it.
+
+    Entries whose states nobody asks for are folded together with later ones.
 
     Args:
         recording: Recording with the real world on the wanted timeline.
-        paths: The simulators. Read their states before asking for the next tick.
+        paths: The simulators. Read their states before asking for the next entry.
         after: Last tick to leave out.
         until: Last tick to yield.
         walk: Place up to which the caller has read these simulators already; None: from the
             beginning.
     """
-    walk = walk or TickWalk()
+    walk, journal = walk or TickWalk(), recording.journal
     for stretch in recording.stretches(recording.moment(())):
         if stretch.tick <= after:
             continue
         key = stretch.timeline
-        forest = walk.begun(recording.history, key, paths)
-        first = recording.journal.entries_until(key, after)
-        if first > forest.position:
-            recording.history.advance(key, forest, first)
-        for position in range(forest.position + 1, stretch.entries + 1):
-            recording.history.advance(key, forest, position)
-            if not after < forest.tick <= until:
-                continue
-            source = recording.history
-            yield forest.tick, {p: TimelineState(forest, p, None, key, source) for p in paths}
+        first = journal.entries_until(key, after)
+        for position, entry in enumerate(journal.entries(key, first, stretch.entries), first + 1):
+            if entry.tick > until:
+                break
+            yield entry, partial(_states_after, recording.history, key, position, paths, walk)
+
+
+def _states_after(
+    history: StateHistory,
+    key: TimelineKey,
+    position: int,
+    paths: Sequence[BeliefPath],
+    walk: TickWalk,
+) -> Mapping[BeliefPath, State]:
+    forest = walk.begun(history, key, paths)
+    history.advance(key, forest, position)
+    return {path: TimelineState(forest, path, None, key, history) for path in paths}
 
 
 def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:
