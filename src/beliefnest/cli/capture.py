@@ -1,6 +1,5 @@
 """`beliefnest capture`: write a place on a server, or in a file, as a scenario."""
 
-import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,6 +8,7 @@ from beliefnest.cli.options import CaptureOptions
 from beliefnest.cli.terminal_text import printable, say
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import new_file, os_errors_of, read_regular
+from beliefnest.scenarios.sources import scenario_name
 from beliefnest.scenarios.writing import scenario_text
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
@@ -17,8 +17,6 @@ from beliefnest.worlds.servers.capturing import Captured, Unknown, capture_file,
 
 _LARGEST_FILE = 64 * 2**20
 _SUFFIX = ".yaml"
-_NO_NAME = re.compile(r"[^A-Za-z0-9_-]+")
-_LONGEST_NAME = 64
 _UNKNOWN: Mapping[str, Unknown] = {"refuse": "refuse", "air": "air"}
 
 
@@ -35,17 +33,13 @@ def write_capture(options: CaptureOptions) -> None:
     if out.exists():
         raise InputError(f"{out} exists already; choose another name")
     captured = _captured(options)
-    text = scenario_text(options.name or _name(out), _description(options), captured.snapshot)
+    name = options.name or scenario_name(out.stem)
+    text = scenario_text(name, _description(options), captured.snapshot)
     with os_errors_of(out, "written"), new_file(out) as file:
         file.write(text.encode())
     for sentence in captured.left_out:
         sys.stderr.write(printable(f"left out: {sentence}") + "\n")
     say(f"{out} is written; run it with: beliefnest run {out}\n")
-
-
-def _name(out: Path) -> str:
-    """Return the stem of the file, with `-` for characters that names of scenarios cannot have."""
-    return _NO_NAME.sub("-", out.stem)[:_LONGEST_NAME]
 
 
 def _captured(options: CaptureOptions) -> Captured:

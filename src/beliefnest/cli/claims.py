@@ -13,7 +13,7 @@ from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.cli.console import folded
 from beliefnest.cli.terminal_text import printable
 from beliefnest.nest.explain.made_claims import MadeClaim
-from beliefnest.scenarios.naming import container_name, named_place
+from beliefnest.scenarios.naming import container_name, place_name
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.paths import parse_path, path_text
@@ -138,7 +138,7 @@ def _words(claim: Claim, scenario: Scenario) -> str:
     """Return a claim in words, with the scenario's names of containers and places."""
     if claim.kind is ClaimKind.POSITION:
         x, y, z = claim.place
-        return claim.about(named_place((x, y, z), scenario.setting).removeprefix("at "))
+        return claim.about(place_name((x, y, z), scenario.setting))
     return claim.about(container_name(claim.cell, scenario.setting))
 
 

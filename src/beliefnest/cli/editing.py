@@ -1,7 +1,6 @@
 """Editor of a scenario file: `beliefnest serve FILE --edit`."""
 
 import dataclasses
-import re
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -14,7 +13,7 @@ from beliefnest.files import os_errors_of, read_regular_text, replace_file
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.scenarios.sources import builtin_names
+from beliefnest.scenarios.sources import builtin_names, scenario_name
 from beliefnest.scenarios.yaml_reading import parse_yaml
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.world.registry import Registry
@@ -53,7 +52,8 @@ class FileEditor:
         """Return the text of the file, and what the page needs before the first edit."""
         with self._turn:
             self._saved = self._on_disk()
-            text = drawn_starter(_name_of(self._file)) if self._saved is None else self._saved
+            name = scenario_name(self._file.stem)
+            text = drawn_starter(name) if self._saved is None else self._saved
         registry = Registry.load()
         return {
             "file": self._file.name,
@@ -166,7 +166,3 @@ def _text(request: dict[str, Any]) -> str:
     if not isinstance(text, str):
         raise InputError("the request lacks the text of the file")
     return text
-
-
-def _name_of(file: Path) -> str:
-    return re.sub(r"[^A-Za-z0-9_-]", "-", file.stem)[:64] or "scenario"

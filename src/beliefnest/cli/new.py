@@ -1,15 +1,12 @@
 """`beliefnest new`: write a scenario to start from."""
 
-import re
 from importlib.resources import files
 from pathlib import Path
 
 from beliefnest.cli.terminal_text import say
 from beliefnest.errors import InputError
 from beliefnest.files import new_file
-from beliefnest.scenarios.sources import builtin_names
-
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
+from beliefnest.scenarios.sources import builtin_names, scenario_name
 
 
 def write_starter(name: str) -> None:
@@ -18,7 +15,7 @@ def write_starter(name: str) -> None:
     Raises:
         InputError: The name is not valid or is taken, or the file cannot be written.
     """
-    if not _NAME.fullmatch(name):
+    if scenario_name(name) != name:
         raise InputError(f"{name!r} is no scenario name; use up to 64 letters, digits, - and _")
     if name in builtin_names():
         raise InputError(f"{name!r} is the name of a built-in scenario; choose another")

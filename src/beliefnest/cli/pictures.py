@@ -17,7 +17,7 @@ from beliefnest.scenarios.expected_acts import Arrives
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_kinds import Infers
 from beliefnest.scenarios.inferring import means_text
-from beliefnest.scenarios.naming import container_name, named_place
+from beliefnest.scenarios.naming import container_name, place_name
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import Journal
@@ -141,7 +141,7 @@ def _place_words(name: str, state: State, scenario: Scenario) -> str:
     agent = state.agents[name]
     if agent.position is None:
         return f"{name}: place not known"
-    where = named_place(agent.position, scenario.setting)
+    where = f"at {place_name(agent.position, scenario.setting)}"
     if agent.current or agent.basis is None:
         return f"{name}: {where}"
     basis = agent.basis
@@ -179,10 +179,9 @@ def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
         answers = [repr(reply.answer) for reply in outcome.replies if reply.answer]
         deed = f"The model answers {' and '.join(answers) or 'nothing'}{_right(outcome)}"
     elif any(isinstance(each, Arrives) for each in probe.expect):
-        where = (
-            "nowhere" if outcome.arrived is None else named_place(outcome.arrived, scenario.setting)
-        )
-        deed = f"{agent} ends {where}"
+        deed = f"{agent} ends nowhere"
+        if outcome.arrived is not None:
+            deed = f"{agent} ends at {place_name(outcome.arrived, scenario.setting)}"
     elif outcome.opened:
         deed = f"{agent} opens {with_the(container_name(outcome.opened[0], scenario.setting))}"
     else:

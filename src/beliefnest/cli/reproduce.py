@@ -123,7 +123,7 @@ def _line(
         [row for row in rows if (row["scenario"], row["condition"], row["probe"]) == about]
         for rows in (written, varied)
     )
-    place = row["opened"].split(" ")[0] if row["opened"] else _rounded(row["arrived"])
+    place = row["opened"] or _rounded(row["arrived"])
     verb = "opens" if row["opened"] else "arrives at"
     result = f"{row['agent']} {verb} {place}" if place else row["why_not"]
     return {

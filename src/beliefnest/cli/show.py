@@ -35,7 +35,7 @@ from beliefnest.prompts.templates import (
     built_in_template,
     load_template,
 )
-from beliefnest.scenarios.naming import container_name, named_place
+from beliefnest.scenarios.naming import container_name, place_name
 from beliefnest.scenarios.records import placed_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.export_tables import prompt_row
@@ -271,13 +271,13 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         grounds = _how_known(state, content.basis, current=content.current)
         containers.add_row(_foreign(name), items or "-", is_all, *grounds)
     for name, agent in state.agents.items():
-        where = (
-            "unknown" if agent.position is None else named_place(agent.position, scenario.setting)
-        )
+        where = "unknown"
+        if agent.position is not None:
+            where = f"at {place_name(agent.position, scenario.setting)}"
         holds = (agent.equipment or {}).get("main_hand", "-")
         seen = "yes" if agent.current else "no"
         grounds = _how_known(state, agent.basis, current=agent.current)
-        agents.add_row(titled(name), _foreign(where or "unknown"), seen, holds, *grounds)
+        agents.add_row(titled(name), _foreign(where), seen, holds, *grounds)
     print_table(console, containers)
     print_table(console, agents)
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):

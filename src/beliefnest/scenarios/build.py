@@ -1,7 +1,6 @@
 """Construction of scenarios from checked documents: setting, probes, and expectations."""
 
 import math
-import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -31,6 +30,7 @@ from beliefnest.scenarios.format import (
 from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry, check_rules
 from beliefnest.scenarios.scene_check import scene_warnings
+from beliefnest.scenarios.sources import scenario_name
 from beliefnest.scenarios.space import (
     UNKNOWN,
     believed_fault,
@@ -53,8 +53,6 @@ from beliefnest.world.values import Block, Items, Point, Position, block_at
 _WORKED_IN = ("conditions", "parameters", "constraints", "instances")
 """Keys that are resolved before the scenario is built."""
 
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
-
 
 def build_scenario(
     document: Document,
@@ -67,7 +65,7 @@ def build_scenario(
     Raises:
         ScenarioError: The content is not consistent; the message names file, line and key.
     """
-    if not _NAME.fullmatch(file.name):
+    if scenario_name(file.name) != file.name:
         raise document.fault(
             ("name",), f"{quoted(file.name)} is no name for a folder; use letters, digits, - and _"
         )

@@ -23,7 +23,7 @@ from beliefnest.scenarios.expected import (
     expected_fact,
     source_of,
 )
-from beliefnest.scenarios.naming import Naming, container_name, named_place
+from beliefnest.scenarios.naming import Naming, container_name, place_name
 from beliefnest.scenarios.trial import NamedFunction, Trial, function_of
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.limits import AGENT_SLOTS
@@ -178,11 +178,11 @@ class Arrives(Deed):
     def account(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, agent: str) -> str:
         where, far = "nowhere", ""
         if outcome.arrived is not None:
-            where = named_place(outcome.arrived, setting)
+            where = f"at {place_name(outcome.arrived, setting)}"
             far = f", {math.dist(outcome.arrived, middle_of(self.place)):.1f} blocks from there"
         return (
             f"Judged by where {agent} stands in the end: {where}; expected was "
-            f"{named_place(self.place, setting)}, within {self.within:g} blocks{far}; "
+            f"at {place_name(self.place, setting)}, within {self.within:g} blocks{far}; "
             f"that is {judged.words}."
         )
 

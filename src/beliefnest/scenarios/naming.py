@@ -47,7 +47,7 @@ def container_name(place: Position, setting: Setting) -> str:
     return on_one_line(setting.labels.get(place, f"({', '.join(map(str, place))})"))
 
 
-def named_place(point: Point, setting: Setting) -> str:
-    """Return a point as text: `at` with a named place near it, or with its coordinates."""
+def place_name(point: Point, setting: Setting) -> str:
+    """Return the name of a place near a point, or its coordinates if none is near."""
     names = names_near(point, {at: name for name, at in setting.places.items()})
-    return f"at {names[0] if names else point_text(point)}"
+    return names[0] if names else point_text(point)

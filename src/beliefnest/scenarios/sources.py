@@ -1,5 +1,6 @@
 """Sources of scenarios: the documents that are built in, and those in files."""
 
+import re
 from importlib.resources import files
 from pathlib import Path
 
@@ -11,6 +12,16 @@ from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.world.texts import quoted
 
 _SUFFIXES = (".yaml", ".yml")
+_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_-]+")
+_LONGEST_NAME = 64
+
+
+def scenario_name(text: str) -> str:
+    """Return a text as a scenario's name; a name, of which a folder can be called, stays as it is.
+
+    Other texts get `-` for the characters that names cannot have.
+    """
+    return _NOT_IN_NAMES.sub("-", text)[:_LONGEST_NAME] or "scenario"
 
 
 def builtin_names() -> list[str]:
