@@ -1,6 +1,6 @@
 /** Entry point of the editor: a scenario file as a plan on which things are placed. */
 
-import { badge, button, element, refill, svg } from './elements.js'
+import { badge, button, element, fillOptions, refill, svg } from './elements.js'
 import { Plan } from './floorPlan.js'
 import { wholeOf } from './part.js'
 import { Run } from './run.js'
@@ -121,8 +121,8 @@ class Editor {
     const track = this.track
     const [low, high] = [box.low[1], box.low[1] + box.shape[1] - 1]
     if (this.storey === null || this.storey < low || this.storey > high) this.storey = mainStorey(this.run, track, 0)
-    fill(this.viewers, [['', 'nobody'], ...agents.map(({ name }) => [name, name])], this.viewer ?? '')
-    fill(this.storeys, Array.from({ length: box.shape[1] }, (_, n) => [String(low + n), String(low + n)]), String(this.storey))
+    fillOptions(this.viewers, [['', 'nobody'], ...agents.map(({ name }) => [name, name])], this.viewer ?? '')
+    fillOptions(this.storeys, Array.from({ length: box.shape[1] }, (_, n) => [String(low + n), String(low + n)]), String(this.storey))
     this.things = thingsOf(this.run, track, 0)
     this.drawSees()
     this.draw()
@@ -357,10 +357,6 @@ function itemsOf (text) {
     counts[name.trim().replaceAll(' ', '_')] = Number(number ?? 1)
   }
   return counts
-}
-
-function fill (select, options, chosen) {
-  refill(select, ...options.map(([value, words]) => element('option', { value, selected: value === chosen }, words)))
 }
 
 async function asked (what, content) {

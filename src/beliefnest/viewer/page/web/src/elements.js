@@ -30,6 +30,11 @@ export function refill (parent, ...children) {
   parent.replaceChildren(...present(children))
 }
 
+/** Replace the options of a selection, each of which has a value and words. */
+export function fillOptions (select, options, chosen) {
+  refill(select, ...options.map(([value, words]) => element('option', { value, selected: value === chosen }, words)))
+}
+
 /** Return a button that shows a sign, with words for screen readers and as a tooltip. */
 export function button (sign, words, onclick, attributes = {}) {
   return element('button', { type: 'button', title: words, 'aria-label': words, onclick, ...attributes }, sign)

@@ -2,7 +2,7 @@
 
 import { PerspectiveCamera, Vector3 } from 'three'
 import { believesText } from './detail.js'
-import { element, refill } from './elements.js'
+import { element, fillOptions, refill } from './elements.js'
 import { Plan } from './floorPlan.js'
 import { partToShow } from './part.js'
 import { isWide } from './run.js'
@@ -163,8 +163,4 @@ function besideScene (scene) {
 function middleHeight (run, things) {
   const heights = [...things.containers.map(each => each.place[1]), ...things.agents.filter(each => each.pose !== null).map(each => each.pose.y)].sort((a, b) => a - b)
   return heights[Math.floor(heights.length / 2)] ?? run.head.box.low[1] + 1
-}
-
-function fillOptions (select, options, chosen) {
-  refill(select, ...options.map(([value, words]) => element('option', { value, selected: value === chosen }, words)))
 }

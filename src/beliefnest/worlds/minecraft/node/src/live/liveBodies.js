@@ -1,7 +1,6 @@
 'use strict'
 /** Agents of a region in real time: bots, people, and bots that replace absent people. */
 const { Vec3 } = require('vec3')
-const { stopBot } = require('../bots/bot')
 const { Bodies } = require('../regions/bodies')
 const { agentState } = require('../regions/facts')
 const { join } = require('../regions/joining')
@@ -17,14 +16,9 @@ class LiveBodies extends Bodies {
     return started
   }
 
-  /** End the acts that a program left unfinished; a bot that still waits for something is replaced at once. */
-  async rest (region, agent, clean) {
-    const { bot, player } = region.bodies.get(agent)
-    stopBot(bot)
-    await this.clock.advance(0)
-    player.emit('rest')
-    await this.clock.advance(0)
-    if (!clean) await this.standIn(region, agent)
+  /** Replace a bot that still waits for something at once. */
+  cutOff (region, agent) {
+    return this.standIn(region, agent)
   }
 
   /** Do nothing: time goes on between calls, so that bodies need not be brought to a stand. */

@@ -139,7 +139,11 @@ class Bodies {
     await this.clock.advance(0)
     player.emit('rest')
     await this.clock.advance(0)
-    if (!clean) bot._client.cut()
+    if (!clean) return this.cutOff(region, agent)
+  }
+
+  cutOff (region, agent) {
+    region.bodies.get(agent).bot._client.cut()
   }
 
   /** End a run. If a bot was cut off from the server, replace all bots of the region. */
