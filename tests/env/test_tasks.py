@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.shared_worlds import WORLDS
 
 import beliefnest as bn
 from beliefnest.belief.initial import initial_forest
@@ -146,6 +147,29 @@ def test_seeds_of_a_file_are_its_instances_and_parameters_can_be_given(tmp_path:
     # A given value may be the default of a parameter that is drawn.
     with closing(parallel_env(str(file), parameters={"box": spots[1]})) as env:
         assert {place for seed in range(4) for place in full(env, seed)} == {tuple(spots[1])}
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_a_container_is_opened_from_its_own_side_of_a_wall(world: str) -> None:
+    """It is empty, within 2 blocks of a place on Ann's side, and everybody knows of it."""
+    wall = {"block": "stone", "fill": [[3, 1, 0], [3, 3, 4]]}
+    content = {
+        **HALL,
+        "blocks": [*HALL["blocks"], wall],
+        "containers": [{"at": CHEST}],
+        "static_blocks": ["stone", "chest"],
+    }
+    room, place = bn.Scenario.from_mapping(content), (4, 1, 2)
+    with closing(
+        parallel_env(room, world=world, step_ticks=200, items=["apple", "diamond"])
+    ) as env:
+        env.reset(seed=0)
+        *_, infos = env.step({"ann": env.action("openContainer", container=place)})
+        assert infos["ann"]["error"] == ""
+        assert env.nest["/ann"].state.containers[place].complete
+        take = env.action("getItemFromChest", container=place, item="apple")
+        *_, infos = env.step({"ann": take})
+        assert infos["ann"]["error"] == "getItemFromChest did not work"
 
 
 @pytest.mark.parametrize(("agent", "ticks"), [("ann", 2), ("bob", 3)])

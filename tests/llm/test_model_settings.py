@@ -73,7 +73,8 @@ def test_the_list_of_skills_has_the_detail_that_is_asked_for():
         each: instructions(skills_at(each)) for each in ("none", "names", "signatures", "full")
     }
     assert [len(text) for text in texts.values()] == sorted(len(text) for text in texts.values())
-    assert texts["full"] == instructions(skills())
+    assert texts["full"] == instructions(tuple(each for each in skills() if each.listed))
+    assert "openContainer" not in texts["full"].replace("bot.openContainer", "")
     assert "You can call" not in texts["none"]
     assert "\ngoToPosition\n" in texts["names"]
     assert "\ngoToPosition(bot, position, dist=2)\n" in texts["signatures"]

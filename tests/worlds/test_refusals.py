@@ -58,7 +58,10 @@ NO_CLAIMS += ["[blockAt(new Vec3(1, 1, 1), 'nothing')]", "[{kind: 'constructor'}
 NO_DOORS = ["3", "{open: true}", "{openDoors: 1}", "[]", "'closeDoors'"]
 NO_AGENTS = ["", "3", "'carl'", "'ann'", "null", "'Bob'", "{}"]
 
-PLACE_ALONE = ["openDoor", "closeDoor", "turnOnLever", "turnOffLever", "pressButton", "readSign"]
+PLACE_ALONE = [
+    *("openContainer", "openDoor", "closeDoor", "turnOnLever", "turnOffLever", "pressButton"),
+    "readSign",
+]
 WITH_ITEMS = ["getItemFromChest", "depositItemIntoChest"]
 
 

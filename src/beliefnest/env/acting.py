@@ -79,7 +79,12 @@ class ProgramActing:
             self._real.step(1)
             return JointStep({agent: ActionState() for agent in actions}, spoken=False)
         results = self._real.run_all(programs, self._timeout_ticks, self._senses)
-        errors = {agent: str(each.error or "") for agent, each in results.items()}
+        # Lines are those of programs that their agents wrote.
+        errors = {
+            agent: str(each.error) if isinstance(actions[agent], str) else each.error.message
+            for agent, each in results.items()
+            if each.error is not None
+        }
         spoken = any(
             event.kind is EventKind.CHAT for each in results.values() for event in each.events
         )

@@ -7,17 +7,7 @@ from typing import Any
 
 import msgspec
 
-from beliefnest.skills.manifests import Parameter, Skill, skills
-
-OPEN_CONTAINER = Skill(
-    "openContainer",
-    "openContainer(position)",
-    "Go to a container, open it and look in.",
-    (Parameter("position", "Vec3", "position of the container", "uses", ("container",)),),
-    "",
-)
-"""The bot's method, as a call that first goes there."""
-
+from beliefnest.skills.manifests import Skill, skills
 
 CLAIM_CALLS = {
     "located": ("located", "item", "place"),
@@ -31,8 +21,7 @@ CLAIM_CALLS = {
 @cache
 def callables() -> Mapping[str, Skill]:
     """Return everything that a `Call` can name."""
-    walking, *others = skills()
-    return {each.name: each for each in (walking, OPEN_CONTAINER, *others)}
+    return {each.name: each for each in skills()}
 
 
 class Call(msgspec.Struct, frozen=True):
@@ -56,21 +45,13 @@ class Call(msgspec.Struct, frozen=True):
         """The call as JavaScript; empty if it begins no action."""
         if self.is_nothing:
             return ""
-        if self.skill == OPEN_CONTAINER.name:
-            place = _code(self.args[0])
-            return (
-                f"await goToPosition(bot, {place}, 2)\nconst container = await "
-                f"bot.openContainer(bot.blockAt({place}))\ncontainer.close()"
-            )
         args = ", ".join(["bot", *map(_code, self.args)])
         return f"await {self.skill}({args})"
 
 
 def program_of(calls: "tuple[Call, ...] | list[Call]") -> str:
     """Return JavaScript that makes calls one after the other; empty if there are none."""
-    texts = [call.program for call in calls]
-    # Put each call into a block, so that its declarations do not clash with those of others.
-    return "\n".join(f"{{ {text} }}" if "\n" in text else text for text in texts if text)
+    return "\n".join(call.program for call in calls if not call.is_nothing)
 
 
 def _code(value: Any) -> str:

@@ -39,6 +39,7 @@ class Skill(msgspec.Struct, frozen=True):
         parameters: Parameters in order.
         example: Program that calls the function.
         scripted: True if it works in the scripted world too.
+        listed: False if lists for models leave it out.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Skill(msgspec.Struct, frozen=True):
     parameters: tuple[Parameter, ...]
     example: str
     scripted: bool = False
+    listed: bool = True
 
     @property
     def arguments(self) -> tuple[Parameter, ...]:
@@ -71,15 +73,16 @@ def skills() -> tuple[Skill, ...]:
 
 def skills_at(detail: SkillDetail) -> tuple[Skill, ...]:
     """Return the skills for a list in a prompt; it leaves out texts beyond the detail."""
+    listed = tuple(each for each in skills() if each.listed)
     match detail:
         case "none":
             return ()
         case "names":
             return tuple(
                 msgspec.structs.replace(each, signature=each.name, description="")
-                for each in skills()
+                for each in listed
             )
         case "signatures":
-            return tuple(msgspec.structs.replace(each, description="") for each in skills())
+            return tuple(msgspec.structs.replace(each, description="") for each in listed)
         case "full":
-            return skills()
+            return listed

@@ -5,38 +5,30 @@ from typing import Any
 import pytest
 
 import beliefnest as bn
-from beliefnest.skills.calls import Call, program_of
 from beliefnest.timeline.run_records import Senses
 from beliefnest.worlds.scripted.literal_program import literal_calls
 
-SKILLS = ("goToPosition", "getItemFromChest", "say", "whisper", "think", "waitTicks", "waitForChat")
-
-
-def looks(*places: tuple[float, float, float]) -> str:
-    """Return the program that opens containers, in a block each if it is not the only one."""
-    return program_of([Call("openContainer", (place,)) for place in places])
+SKILLS = (
+    "goToPosition",
+    "openContainer",
+    "getItemFromChest",
+    "say",
+    "whisper",
+    "think",
+    "waitTicks",
+    "waitForChat",
+)
 
 
 CHEST, MORE, WALLED, BARE = (4, 1, 4), (7, 1, 2), (0, 1, 9), (6, 1, 6)
 """A chest, a second one, one that cannot be reached, and a place without."""
-OPENING = f"const container = await bot.openContainer(bot.blockAt(new Vec3{CHEST}))"
+OPENING = f"await bot.openContainer(bot.blockAt(new Vec3{CHEST}))"
 LITERAL = [
-    looks(CHEST),
-    looks(BARE),
-    looks(WALLED),
-    looks((400, 1, 4)),
-    looks((4.5, 1.25, 4.5)),
-    looks((-3, 1, 4)),
-    program_of([Call("say", ("a",)), Call("openContainer", (CHEST,)), Call("think", ("b",))]),
-    program_of([Call("openContainer", (CHEST,)), Call("openContainer", (MORE,))]),
-    program_of([Call("openContainer", (MORE,)), Call("openContainer", (BARE,))]),
-    program_of([Call("openContainer", (BARE,)), Call("openContainer", (MORE,))]),
-    f"{OPENING}\ncontainer.close()",
-    f"{OPENING.replace('4, 1, 4', '9, 1, 9')}; container.close();",
-    f"{OPENING.replace('4, 1, 4', '400, 1, 4')}\ncontainer.close()",
-    f"  {{ // look\n  {OPENING} // in\n  container.close() }}\n{OPENING}\ncontainer.close()",
-    f"await waitTicks(bot, 38)\r\n{OPENING}\ncontainer.close()",
-    "{ await say(bot, 'a') }",
+    f"await openContainer(bot, new Vec3{CHEST})",
+    f"await openContainer(bot, new Vec3{MORE})\nawait openContainer(bot, new Vec3{BARE})",
+    f"await openContainer(bot, new Vec3{WALLED})\nawait openContainer(bot, new Vec3{CHEST})",
+    "await openContainer(bot, new Vec3(4.5, 1.25, 4.5))",
+    "await openContainer(bot, new Vec3(400, 1, 4))",
     "",
     "// nothing",
     "await goToPosition(bot, new Vec3(-2, 51, 0.5), 0);",
@@ -63,35 +55,12 @@ LITERAL = [
     "await say (bot, '\u00e9\u2028') // \U0001f680\r\n// more\nawait say(bot, '', )",
 ]
 OTHERS = [
+    f"const container = {OPENING}\ncontainer.close()",
     OPENING,
-    f"{OPENING}\ncontainer.close()\n{OPENING}\ncontainer.close()",
-    f"{OPENING}\nawait say(bot, 'a')\ncontainer.close()",
-    f"{OPENING}\ncontainer.close()\ncontainer.close()",
-    f"{OPENING}\n{{ container.close() }}",
-    f"{OPENING}\ncontainer.close(1)",
-    f"{OPENING}\ncontainer?.close()",
-    f"{OPENING}\nother.close()",
-    "container.close()",
-    f"{OPENING.replace('const', 'let')}\ncontainer.close()",
-    f"{OPENING.replace('container', 'bot', 1)}\ncontainer.close()",
-    f"{OPENING.replace('await ', '')}\ncontainer.close()",
-    f"{OPENING}, leak = 1\ncontainer.close()",
-    f"{OPENING.replace('openContainer', 'openChest')}\ncontainer.close()",
-    f"{OPENING.replace('blockAt', 'blockOf')}\ncontainer.close()",
-    f"{OPENING.replace('bot.open', 'bot?.open')}\ncontainer.close()",
-    f"{OPENING.replace('4, 1, 4', '4, 1, 1000000')}\ncontainer.close()",
-    f"{OPENING.replace('4, 1, 4', '4, 1')}\ncontainer.close()",
-    f"{OPENING.replace('4))', '4), true)')}\ncontainer.close()",
-    f"{OPENING.replace('4))', '4)), true')}\ncontainer.close()",
-    f"await bot.openContainer(bot.blockAt(new Vec3{CHEST}))",
     "await bot.openContainer(bot, new Vec3(4, 1, 4))",
-    f"await openContainer(bot, new Vec3{CHEST})",
-    f"const container = await goToPosition(bot, new Vec3{CHEST})\ncontainer.close()",
-    f"{{ {{ {OPENING}\ncontainer.close() }} }}",
+    "{ await say(bot, 'a') }",
     "{ }",
     "await\rwaitTicks(bot, 500)",
-    OPENING.replace("= ", "=\n") + "\ncontainer.close()",
-    "{ await say(bot, 'a') } " * 101 + "{ await say(bot, 'a'); await say(bot, 'a') }" * 50,
     "globalThis.leak = 1;",
     "await say(bot, [].constructor.constructor('leak = 1')());",
     "await say(bot, `${Array.prototype.leak = 1}`);",
@@ -170,16 +139,13 @@ def test_programs_of_literal_calls_end_as_the_interpreter_ends_them(
 
 
 def test_a_time_that_ends_while_containers_are_opened_makes_no_difference() -> None:
-    code, unfinished = looks(CHEST, MORE), set()
-    for ticks in range(1, 7):
+    code = f"await openContainer(bot, new Vec3{CHEST})\nawait openContainer(bot, new Vec3{MORE})"
+    unfinished = set()
+    for ticks in range(1, 5):
         first, second = (played(text, "", "percepts", ticks) for text in (code, f"{code}\n;;"))
         assert first == second
         unfinished |= {(each.what, each.line) for each in first[0].unfinished}
-    walks, opens = (
-        {("goToPosition", 1), ("goToPosition", 4)},
-        {("openContainer", 2), ("openContainer", 5)},
-    )
-    assert unfinished == walks | opens
+    assert unfinished == {("openContainer", 1), ("openContainer", 2)}
 
 
 @pytest.mark.parametrize("code", OTHERS)

@@ -477,9 +477,9 @@ class _Planning:
             if not content.complete and place not in self._doubted
         ]
         for place in sorted(unknown, key=lambda at: (_apart(me.position, at), at)):
-            call = Call("openContainer", (place,))
-            if self._succeeds(mind, call):
-                return (call,)
+            calls = (Call("goToPosition", (place, 2)), Call("openContainer", (place,)))
+            if self._succeeds(mind, calls):
+                return calls
         return ()
 
     def _telling(self, mind: Imagination) -> Call | None:
@@ -499,9 +499,9 @@ class _Planning:
                 return call
         return None
 
-    def _succeeds(self, mind: Imagination, call: Call) -> bool:
-        """Return True if the agent, left alone in a mind, can do a call."""
-        trial, mine = mind.bare(), Performer([call])
+    def _succeeds(self, mind: Imagination, calls: Sequence[Call]) -> bool:
+        """Return True if the agent, left alone in a mind, can do the last one of some calls."""
+        trial, mine = mind.bare(), Performer([*calls])
         trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)
         return not mine.failed
 

@@ -27,10 +27,11 @@ change the direction of text, is refused with an error.
 This page is generated from the skills' own files by \`src/beliefnest/skills/code/generate.js\`.
 `
 
-function markdown ({ name, signature, description, parameters, example, fails, scripted }) {
+function markdown ({ name, signature, description, parameters, example, fails, scripted, listed }) {
   const parts = [...new Set(parameters.flatMap(({ action }) => (Array.isArray(action) ? action : [])))]
   const notes = [
     ...(scripted ? ['Works in the [scripted world](scripted-world.md), too.'] : []),
+    ...(listed === false ? ['Lists of skills in prompts leave it out.'] : []),
     ...(parts.length > 0 ? [`A [structured action](pettingzoo.md#actions) reads ${parts.map(part => `\`${part}\``).join(', ')}.`] : [])
   ]
   const rows = parameters.map(parameter => `| \`${parameter.name}\` | \`${parameter.type.replaceAll('|', '\\|')}\` | ${parameter.description} |`)

@@ -5,6 +5,7 @@
  *
  * - `name`, `description`, `example`; `fails`: reasons of failure
  * - `scripted`: true if the skill has a twin in the scripted world, in worlds/scripted/skills.py
+ * - `listed`: false if lists for models leave it out
  * - `cost`: name of its price in fuel (`COST` of sandbox/policy/kinds.js); `call` if left out
  * - `parameters` in order: `name`, `type`, `description`; `default` as in the signature; `aim` if the argument is the
  *   target of the skill (a position or the name of an agent): `walks` if the agent walks there, `uses` if it uses what is
@@ -24,6 +25,7 @@ const LONGEST_MESSAGE = 2000
 
 const MANIFESTS = [
   require('./goToPosition'),
+  require('./openContainer'),
   require('./getItemFromChest'),
   require('./depositItemIntoChest'),
   require('./mineBlock'),

@@ -341,7 +341,7 @@ class JavaScriptProgram:
         [target] = admission["checked"]
         if not isinstance(target, dict) or "position" not in target:
             raise RefusedError(f"the scripted world opens blocks alone; {_ELSEWHERE}")
-        return self._promise("openContainer", at_place(admission), "bot.openContainer")
+        return self._promise("bot.openContainer", at_place(admission))
 
     def _listen(self, event: str, wire: Any, once: bool) -> Any:
         if event not in parts().announced:

@@ -1,15 +1,13 @@
 """Programs that only call skills with literal values: they need no interpreter.
 
 Most scripts and most answers of models are of this kind: `await` before each call, and numbers,
-texts, positions, counted items and lists of claims as arguments. So are the statements of
-`Call.program` that open a container and close it, and blocks of such statements. Here such a
-program is read and carried out as it stands, with the outcome that the interpreter gives, in a
-tenth of the time.
+texts, positions, counted items and lists of claims as arguments. Here such a program is read and
+carried out as it stands, with the outcome that the interpreter gives, in a tenth of the time.
 """
 
 import re
 from collections import deque
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import msgspec
@@ -20,7 +18,7 @@ from beliefnest.world.event_words import Announcement
 from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotReads
 from beliefnest.worlds.scripted.desk import Desk, DeskFacts
-from beliefnest.worlds.scripted.requests import Request, at_place, error_of, fault_of, is_near
+from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
 
 _MOST_CALLS = 200
 """Programs with more calls go to the interpreter, where their fuel is counted."""
@@ -34,9 +32,6 @@ _NUMBER = re.compile(r"(?!-0(?:\.0*)?$)-?(?:0|[1-9]\d{0,14})(?:\.\d{1,15})?", re
 _KEY = re.compile(r"[A-Za-z][\w ]*", re.ASCII)
 """Keys that keep their order in JavaScript and mean nothing there."""
 _BOT = {"$": "h", "id": 0}
-_OPEN = "bot.openContainer"
-_OPENING = ("const", b"container", _OPEN.encode(), b"bot.blockAt")
-_CLOSING = (b"container.close()", b"container.close();")
 _CLAIMS = {call.encode(): (kind, *names) for kind, (call, *names) in CLAIM_CALLS.items()}
 """Functions that make claims: the kind, and the names of the arguments in order."""
 _ONE, _TWO, _THREE, _SOME = range(1, 2), range(2, 3), range(3, 4), range(1, 100)
@@ -48,11 +43,11 @@ class _OtherProgramError(Exception):
 
 
 class LiteralCall(msgspec.Struct, frozen=True):
-    """Call of a skill, or of `bot.openContainer` for the block at a place.
+    """Call of a skill.
 
     Attributes:
-        name: Name of the skill or method.
-        wires: Arguments, as the interpreter would hand them over; of the method, the place.
+        name: Name of the skill.
+        wires: Arguments, as the interpreter would hand them over.
         start: Offset of the name in the text.
     """
 
@@ -71,25 +66,9 @@ def literal_calls(code: str, skills: Collection[str]) -> tuple[LiteralCall, ...]
         return None
     try:
         statements = _parts(root, "program", range(_MOST_CALLS + 1))
-        calls = tuple(_calls(statements, source, skills))
+        return tuple(_call(each, source, skills) for each in statements)
     except _OtherProgramError:
         return None
-    return calls if len(calls) <= _MOST_CALLS else None
-
-
-def _calls(
-    statements: list[Any], source: bytes, skills: Collection[str], *, in_block: bool = False
-) -> Iterator[LiteralCall]:
-    """Yield the calls of the statements of a program, or of a block in it."""
-    opens = len(statements) > 1 and statements[-1].text in _CLOSING
-    for statement in statements[:-2] if opens else statements:
-        if statement.type == "statement_block" and not in_block:
-            block = _parts(statement, statement.type, range(1, _MOST_CALLS))
-            yield from _calls(block, source, skills, in_block=True)
-        else:
-            yield _call(statement, source, skills)
-    if opens:
-        yield _opening(statements[-2], source)
 
 
 def _call(statement: Any, source: bytes, skills: Collection[str]) -> LiteralCall:
@@ -99,36 +78,17 @@ def _call(statement: Any, source: bytes, skills: Collection[str]) -> LiteralCall
     name, (bot, *others) = _named(call, _SOME)
     if bot.text != b"bot" or name.text.decode() not in skills:
         raise _OtherProgramError
-    start = _start(name, statement, source)
-    return LiteralCall(name.text.decode(), (_BOT, *map(_wire, others)), start)
-
-
-def _opening(statement: Any, source: bytes) -> LiteralCall:
-    """Return the call of `const container = await bot.openContainer(bot.blockAt(PLACE))`."""
-    (declarator,) = _parts(statement, "lexical_declaration", _ONE)
-    variable, value = _parts(declarator, "variable_declarator", _TWO)
-    (call,) = _parts(value, "await_expression", _ONE)
-    method, (block,) = _named(call, _ONE)
-    reading, (place,) = _named(block, _ONE)
-    words = (statement.children[0].type, variable.text, method.text, reading.text)
-    wire = _word(place)
-    if words != _OPENING or not is_near([wire]):
+    # What it calls is in the first line of the statement, by which errors name it.
+    if _ENDS.search(source[statement.start_byte : name.start_byte].decode()):
         raise _OtherProgramError
-    start = _start(method.named_children[-1], statement, source)
-    return LiteralCall(_OPEN, tuple(wire["c"]), start)
+    start = len(source[: name.start_byte].decode())
+    return LiteralCall(name.text.decode(), (_BOT, *map(_wire, others)), start)
 
 
 def _named(call: Any, numbers: range) -> tuple[Any, list[Any]]:
     """Return what a call names, and its arguments."""
     name, arguments = _parts(call, "call_expression", _TWO)
     return name, _parts(arguments, "arguments", numbers)
-
-
-def _start(node: Any, statement: Any, source: bytes) -> int:
-    """Return the offset in the text of a node that is in the first line of its statement."""
-    if _ENDS.search(source[statement.start_byte : node.start_byte].decode()):
-        raise _OtherProgramError
-    return len(source[: node.start_byte].decode())
 
 
 def _parts(node: Any, kind: str, numbers: range) -> list[Any]:
@@ -264,16 +224,11 @@ class LiteralProgram:
             self._end(admission["error"])
             return
         self._number += 1
-        name = call.name.removeprefix("bot.")
-        self._requests.append(Request.admitted(self._number, name, admission))
+        self._requests.append(Request.admitted(self._number, call.name, admission))
 
     def _admission(self, call: LiteralCall) -> Mapping[str, Any]:
         facts = DeskFacts(self._reads.name, self._reads.agents, ("bot",))
-        if call.name != _OPEN:
-            return self._desk.admit_skill(call.name, call.wires, facts)
-        block = self._reads.block(call.wires)
-        admission = self._desk.admit_call("bot", "openContainer", [block], facts)
-        return admission if "error" in admission else at_place(admission)
+        return self._desk.admit_skill(call.name, call.wires, facts)
 
     def _end(self, error: Mapping[str, Any]) -> None:
         line, column = self._place()

@@ -339,7 +339,7 @@ def _result(
         happened=happened,
         log=tuple(run.program.log),
         unfinished=tuple(
-            run.program.unfinished(number, name)
+            run.program.unfinished(number, name.removeprefix("bot."))
             for number, name in sorted(
                 [*run.stopped, *((number, name) for number, (name, _) in run.doing.items())]
             )

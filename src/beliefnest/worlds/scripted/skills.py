@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from beliefnest.errors import InputError, WorldError
-from beliefnest.skills.calls import OPEN_CONTAINER, Call
+from beliefnest.skills.calls import Call
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_door, is_open
 from beliefnest.world.registry import Registry
@@ -73,6 +73,10 @@ def _deposit_item_into_chest(hand: Hand, position: Any, items: Any) -> Doing:
 
 
 def _open_container(hand: Hand, position: Any) -> Doing:
+    yield from _open(hand, block_in(position))
+
+
+def _open_from_here(hand: Hand, position: Any) -> Doing:
     place = block_in(position)
     yield from _open(hand, place, walks=False)
     return dict(hand.world.contents(place))
@@ -225,6 +229,7 @@ def _do_nothing(hand: Hand) -> Doing:
 
 SKILLS: Mapping[str, Callable[..., Doing]] = {
     "goToPosition": _go_to_position,
+    "openContainer": _open_container,
     "getItemFromChest": _get_item_from_chest,
     "depositItemIntoChest": _deposit_item_into_chest,
     "openDoor": _use_door(to_open=True),
@@ -248,7 +253,7 @@ SKILLS: Mapping[str, Callable[..., Doing]] = {
 """Skills by name."""
 
 CALLS: Mapping[str, Callable[..., Doing]] = {
-    "openContainer": _open_container,
+    "bot.openContainer": _open_from_here,
     "bot.chat": _chat,
     "bot.whisper": _tell,
 }
@@ -259,10 +264,8 @@ UTTERANCES = frozenset(("say", "whisper", "think"))
 
 
 def perform(hand: Hand, call: Call) -> Doing:
-    """Make a call; `openContainer` first walks near, as the call's program does."""
-    if call.skill == OPEN_CONTAINER.name:
-        yield from _go_to_position(hand, call.args[0], _NEAR)
-    yield from {**SKILLS, **CALLS}[call.skill](hand, *call.args)
+    """Make a call of a skill."""
+    return SKILLS[call.skill](hand, *call.args)
 
 
 def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:

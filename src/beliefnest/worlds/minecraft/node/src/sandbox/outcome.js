@@ -26,7 +26,7 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
  */
 function describeOutcome ({ ok, error, stray, ended, full }, program, limits, last, names = [], under = []) {
   if (ok) return null
-  const { message, skill, kind, reason, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits, full)
+  const { message, skill, kind, reason, stack } = ended ? ofEnd(ended, limits, full) : ofError(error, limits, full)
   const { place, callee } = placeIn(stack, program)
   const { line, column } = place ?? program.statement(last) ?? { line: null, column: null }
   return { message: cut(named(message, callee) + nearName(message, names) + notAwaited(message, under), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind, ...(reason && { reason }) }
@@ -37,7 +37,9 @@ function named (message, callee) {
   return message === 'TypeError: not a function' && callee !== null ? `TypeError: ${callee} is not a function` : message
 }
 
-function ofEnd ({ kind, message, guestStack }, limits) {
+function ofEnd ({ kind: how, message, guestStack }, limits, full) {
+  // A promise whose job found no room is never settled.
+  const kind = how === 'stuck' && full ? 'memory' : how
   return { message: limitMessage(kind, limits) ?? message, skill: null, kind, stack: guestStack }
 }
 
