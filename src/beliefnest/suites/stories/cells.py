@@ -1,12 +1,10 @@
 """Stories as cells of a plan."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
 import msgspec
-from msgspec import structs
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
 from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.messages import Sampling
@@ -76,4 +74,4 @@ def story_cells(
 def _content(asked: StoryItems) -> str:
     lines = [[line.place, line.text] for line in asked.story.lines]
     questions = [[each.row, asdict(each.question), each.expected] for each in asked.items]
-    return digest([lines, questions, structs.asdict(asked.knowing)])[:16]
+    return digest([lines, questions, asdict(asked.knowing)])[:16]

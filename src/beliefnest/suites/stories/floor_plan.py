@@ -25,8 +25,8 @@ The hall is a further room without barrels; agents there see and hear each other
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 
 from beliefnest.errors import InputError
@@ -49,8 +49,7 @@ _CELL, _CORRIDOR, _ROOM, _STANDS, _BARRELS, _DEPTH = 1, 4, 8, 9, 10, 12
 _BEND = 3
 
 
-@dataclass(frozen=True, slots=True)
-class FloorPlan:
+class FloorPlan(msgspec.Struct, frozen=True):
     """Positions of everything in a story, in blocks.
 
     Attributes:

@@ -1,8 +1,6 @@
 """Playing of stories in a world, with a nest that tracks the beliefs."""
 
-import dataclasses
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 import msgspec
@@ -32,8 +30,7 @@ _TICKS_PER_BLOCK = 8
 """Ticks allowed per block of a walk; more than walking takes."""
 
 
-@dataclass(frozen=True, slots=True)
-class StoryAnswer:
+class StoryAnswer(msgspec.Struct, frozen=True):
     """Answer of a simulator to a question about a thing, a door or a sign.
 
     Attributes:
@@ -339,4 +336,4 @@ def _perform(nest: Nest, programs: Mapping[str, str], where: str) -> None:
 def _in_words_alone(story: Story) -> Story:
     """Return the story without the claims beside utterances, so that only the words remain."""
     acts = (replace(act, is_claimed=False) if isinstance(act, Tell) else act for act in story.acts)
-    return dataclasses.replace(story, acts=tuple(acts))
+    return replace(story, acts=tuple(acts))

@@ -1,14 +1,15 @@
 """Questions about stories."""
 
 import re
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from beliefnest.errors import InputError
 from beliefnest.world.texts import quoted
 
 
-@dataclass(frozen=True, slots=True)
-class Question:
+class Question(msgspec.Struct, frozen=True):
     """Question about the place of a thing, a door, or a sign, in reality or in a belief.
 
     Attributes:

@@ -5,7 +5,6 @@ thing is taken out of the container it is in. It knows nothing of beliefs.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
 import msgspec
 from msgspec.structs import replace
@@ -141,8 +140,7 @@ class Tell(msgspec.Struct, frozen=True):
 Act = Come | Go | Move | Take | Put | LookInto | UseDoor | Write | Tell | Wait
 
 
-@dataclass(frozen=True, slots=True)
-class Story:
+class Story(msgspec.Struct, frozen=True):
     """Story that can be played. All tuples and mappings are in order of first mention.
 
     Attributes:
@@ -166,7 +164,7 @@ class Story:
     things: dict[str, Place | HandOver]
     doors: tuple[str, ...] = ()
     signs: tuple[str, ...] = ()
-    present: Mapping[str, str] = field(default_factory=dict)
+    present: Mapping[str, str] = msgspec.field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     @property
@@ -242,7 +240,7 @@ def _named(lines: Sequence[Line]) -> Iterator[Line]:
                     raise line.fault("no earlier line names a thing that 'it' could be")
                 if doubt is not None:
                     raise line.fault(f"'it' may be the {last} or the {doubt}; name the thing")
-                thing, sentence = last, msgspec.structs.replace(sentence, thing=last)
+                thing, sentence = last, replace(sentence, thing=last)
             if not (isinstance(sentence, Located) and thing in holders):
                 last, doubt = thing, None
         if isinstance(sentence, Wait) and sentence.about is not None:
@@ -329,21 +327,20 @@ def _stated_rooms(lines: Sequence[Line], rooms: Sequence[str]) -> dict[str, str]
     return stated
 
 
-@dataclass
-class _Reader:
+class _Reader(msgspec.Struct):
     """Interpreter that tracks the real places of agents and things, line by line."""
 
     lines: Sequence[Line]
     rooms: Sequence[str]
     stated: dict[str, str]
-    whereabouts: dict[str, str | None] = field(default_factory=dict)
-    first: dict[str, Place | HandOver] = field(default_factory=dict)
-    now: dict[str, Place | HandOver] = field(default_factory=dict)
-    places: dict[Place, None] = field(default_factory=dict)
-    is_open: dict[str, bool] = field(default_factory=dict)
-    present: dict[str, str] = field(default_factory=dict)
-    left: dict[str, str] = field(default_factory=dict)
-    said: list[tuple[Line, Told, dict[str, str | None]]] = field(default_factory=list)
+    whereabouts: dict[str, str | None] = msgspec.field(default_factory=dict)
+    first: dict[str, Place | HandOver] = msgspec.field(default_factory=dict)
+    now: dict[str, Place | HandOver] = msgspec.field(default_factory=dict)
+    places: dict[Place, None] = msgspec.field(default_factory=dict)
+    is_open: dict[str, bool] = msgspec.field(default_factory=dict)
+    present: dict[str, str] = msgspec.field(default_factory=dict)
+    left: dict[str, str] = msgspec.field(default_factory=dict)
+    said: list[tuple[Line, Told, dict[str, str | None]]] = msgspec.field(default_factory=list)
 
     def act(self, number: int) -> Act:  # noqa: PLR0911, PLR0912  # one case a sentence
         """Return the act of a line."""

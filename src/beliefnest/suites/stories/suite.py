@@ -1,10 +1,10 @@
 """Suites: answer all questions of a file of stories, and score the answers."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from beliefnest.suites.stories.answer_check import data_fault
 from beliefnest.suites.stories.data import StoryItems
