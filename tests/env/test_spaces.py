@@ -186,23 +186,32 @@ def test_lines_for_people_are_printed_at_each_step(capsys: pytest.CaptureFixture
     assert "aaron place not known; ann at (1.5, 1, 1.5); bob at (3.5, 1, 3.5)" in lines[0]
 
 
-def test_a_deadline_of_the_task_terminates_and_a_limit_of_rounds_truncates() -> None:
-    goal = {"reach": [{"agent": "ann", "items": {"diamond": 1}}]}
-    for rounds, deadline, ends in (
+@pytest.mark.parametrize(
+    ("rounds", "deadline", "ends"),
+    [
         (3, None, (False, True)),
-        # The deadline passes in the last round, and in one before it.
+        # The deadline passes in the last round, in one before it, and at the end of one.
         (3, 5, (True, False)),
         (9, 5, (True, False)),
-    ):
-        goals = {**goal, **({"ticks": deadline} if deadline else {})}
-        episode = {"goal": goals, "rounds": rounds, "round_ticks": 2}
-        scene = bn.Scenario.from_mapping({**ROOM, "episode": episode})
-        with closing(parallel_env(scene, agents=["ann"])) as env:
-            env.reset(seed=0)
-            while env.agents:
-                _, _, ended, cut, infos = env.step({})
-            assert (ended["ann"], cut["ann"], infos["ann"]["success"]) == (*ends, False)
-            assert env.nest.tick == 6
+        (9, 6, (True, False)),
+        (3, 6, (True, False)),
+        # It would have passed in the next round.
+        (3, 7, (False, True)),
+    ],
+)
+def test_a_deadline_of_the_task_terminates_and_a_limit_of_rounds_truncates(
+    rounds: int, deadline: int | None, ends: tuple[bool, bool]
+) -> None:
+    goal = {"reach": [{"agent": "ann", "items": {"diamond": 1}}]}
+    goals = {**goal, **({"ticks": deadline} if deadline else {})}
+    episode = {"goal": goals, "rounds": rounds, "round_ticks": 2}
+    scene = bn.Scenario.from_mapping({**ROOM, "episode": episode})
+    with closing(parallel_env(scene, agents=["ann"])) as env:
+        env.reset(seed=0)
+        while env.agents:
+            _, _, ended, cut, infos = env.step({})
+        assert (ended["ann"], cut["ann"], infos["ann"]["success"]) == (*ends, False)
+        assert env.nest.tick == 6
 
 
 @pytest.mark.parametrize(

@@ -61,6 +61,8 @@ class Watch:
                     self._test(states())
                 self._feed(entry.tick, self._said(entry))
             self._seen = nest.tick
+            for each in self._distinct:
+                each.end_tick(nest.tick)
         return self.progress
 
     def _matters(self, entry: Entry) -> bool:

@@ -117,6 +117,12 @@ class Progress:
         elif count and all(are_met[:count]):
             self.reached = tick
 
+    def end_tick(self, tick: int) -> None:
+        """Note that nothing more happens in a tick: with the last one, a limit of ticks is over."""
+        is_open = self.reached is None and self.violated is None
+        if is_open and self.goal.ticks is not None and tick - self.start >= self.goal.ticks:
+            self.violated = tick
+
     def succeeded(self, *, over: bool) -> bool:
         """Return True if the goal is reached; `over` is True if the episode has ended."""
         if self.violated is not None:
