@@ -109,7 +109,7 @@ class ShownSimulator(ABC):
         if path:
             return [percept.tick for percept, _ in percepts_of(recording, path, start, end)]
         entries = each_entry(recording, [path], start.tick, end.tick)
-        return [start.tick, *(entry.tick for entry, _ in entries)]
+        return list(dict.fromkeys([start.tick, *(entry.tick for entry, _ in entries)]))
 
     @property
     def tick(self) -> int:
