@@ -5,9 +5,11 @@ import statistics
 import tempfile
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import NamedTuple
+
+import msgspec
 
 from beliefnest_benchmarks.children import printed
 from beliefnest_benchmarks.memory import megabytes, peak_megabytes
@@ -40,8 +42,7 @@ class Point(NamedTuple):
     mb: float
 
 
-@dataclass(frozen=True, slots=True)
-class Series:
+class Series(msgspec.Struct, frozen=True):
     """One line of a curve.
 
     Attributes:
@@ -54,8 +55,7 @@ class Series:
     calls: Sequence[str]
 
 
-@dataclass(frozen=True, slots=True)
-class Aim:
+class Aim(msgspec.Struct, frozen=True):
     """Figure that a curve is not to exceed, drawn as a line.
 
     Attributes:
@@ -73,8 +73,7 @@ class Aim:
     at: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Curve:
+class Curve(msgspec.Struct, frozen=True):
     """Curve of growth, drawn as two plots: time and memory over the same axis.
 
     Attributes:

@@ -5,8 +5,9 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from beliefnest.errors import BodyError
 from beliefnest.plan.jobs import StudyProgress
@@ -22,8 +23,7 @@ _SMALL = 24
 """Cells of a small study, in which starting counts."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Run:
+class _Run(msgspec.Struct, frozen=True):
     """Times of a study.
 
     Attributes:

@@ -8,9 +8,9 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
 from msgspec.structs import replace
 
 from beliefnest.belief.view import State
@@ -122,8 +122,7 @@ def _later(walk: Sequence[Frame], tick: int) -> Frame:
     return replace(walk[tick % len(walk)], tick=tick)
 
 
-@dataclass(frozen=True, slots=True)
-class _Recorded:
+class _Recorded(msgspec.Struct, frozen=True):
     """Ticks recorded per second, by the journal alone and with the history; size in megabytes."""
 
     alone: float

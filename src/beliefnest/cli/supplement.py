@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
 from beliefnest.cli.console import print_report, progress_on
 from beliefnest.cli.gallery import Gallery, RunResults
@@ -114,7 +114,7 @@ def _report(
         "rows": reproduction.rows,
         "compared": list(_compared(reproduction)),
         "not_compared": list(_not_compared(reproduction)),
-        "differences": [each.plain() for each in differences],
+        "differences": [asdict(each) for each in differences],
         "other_versions": other,
     }
 

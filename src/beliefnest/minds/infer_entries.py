@@ -22,10 +22,8 @@ MOST_HYPOTHESES = 2_000_000
 _SLACK = 1e-9
 
 
-class _Supposed(Checks):
+class _Supposed(Checks, frozen=True):
     """Checks of alternatives, in which blocks may be containers that are none in the scene."""
-
-    __slots__ = ()
 
     def container(self, path: KeyPath, position: Position) -> Position:
         """Return the position of the container to which a block belongs or would belong."""

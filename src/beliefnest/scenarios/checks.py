@@ -1,6 +1,6 @@
 """Checks of names and places in a document against the world that it describes."""
 
-from dataclasses import dataclass
+import msgspec
 
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath
@@ -34,8 +34,7 @@ def check_inside(document: Document, path: KeyPath, position: Position, box: Box
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Checks:
+class Checks(msgspec.Struct, frozen=True):
     """Checks that raise `ScenarioError` with file, line and key.
 
     Attributes:

@@ -1,8 +1,9 @@
 """Differences between recorded results and the same results computed again."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from beliefnest.world.texts import quoted
 
@@ -16,8 +17,7 @@ ADDED = "added"
 """Key of a difference whose file was not bundled."""
 
 
-@dataclass(frozen=True, slots=True)
-class PairedDifference:
+class PairedDifference(msgspec.Struct, frozen=True):
     """Difference of one value.
 
     Attributes:
@@ -42,10 +42,6 @@ class PairedDifference:
         if self.what == ADDED:
             return f"{self.where} is not in the manifest"
         return f"{self.where}: {self.what} is {quoted(self.recorded)}, now {quoted(self.again)}"
-
-    def plain(self) -> dict[str, Any]:
-        """Return the values by name."""
-        return {name: getattr(self, name) for name in self.__slots__}
 
 
 def differing_rows(

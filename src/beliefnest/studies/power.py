@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any, Protocol
 
 import msgspec
 import numpy as np
+from msgspec.structs import asdict
 
 from beliefnest.errors import InputError
 from beliefnest.studies.checking import is_count, is_whole
@@ -135,8 +135,7 @@ class Resampled(msgspec.Struct, frozen=True):
         return [self.clusters[n] for n in chance.integers(0, len(self.clusters), count)]
 
 
-@dataclass(frozen=True, slots=True)
-class Power:
+class Power(msgspec.Struct, frozen=True):
     """Result of simulations with one number of variations.
 
     Attributes:
@@ -158,10 +157,6 @@ class Power:
     difference_width: float | None
     power: float | None
     note: str
-
-    def plain(self) -> dict[str, Any]:
-        """Return the values by name."""
-        return {name: getattr(self, name) for name in self.__slots__}
 
 
 def _simulated(
@@ -215,7 +210,7 @@ def power_rows(
         InputError: A number is wrong.
     """
     simulated = _simulated(sources, sizes, simulations, seed, on_progress)
-    return [{"of": name, **power.plain()} for name, power in simulated]
+    return [{"of": name, **asdict(power)} for name, power in simulated]
 
 
 class _Study(msgspec.Struct, frozen=True):

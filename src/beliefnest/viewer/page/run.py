@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
 from msgspec.structs import asdict
 
 from beliefnest.belief.node_memory import paths_with_room
@@ -23,8 +24,7 @@ from beliefnest.world.values import Position
 Onlookers = Callable[[TimelineInfo, Sequence[BeliefPath]], Onlooker]
 
 
-@dataclass(frozen=True, slots=True)
-class About:
+class About(msgspec.Struct, frozen=True):
     """Names and texts about a run, for people.
 
     Attributes:
@@ -45,10 +45,10 @@ class About:
     title: str
     subtitle: str = ""
     description: str = ""
-    labels: Mapping[Position, str] = field(default_factory=dict)
+    labels: Mapping[Position, str] = msgspec.field(default_factory=dict)
     paths: tuple[BeliefPath, ...] = ()
-    episode: Callable[[], Mapping[str, Any] | None] = field(default=lambda: None)
-    inferences: Callable[[], Sequence[Mapping[str, Any]]] = field(default=tuple)
+    episode: Callable[[], Mapping[str, Any] | None] = msgspec.field(default=lambda: None)
+    inferences: Callable[[], Sequence[Mapping[str, Any]]] = msgspec.field(default=tuple)
 
 
 @dataclass

@@ -6,10 +6,12 @@ most those in which one and the same course wins.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
+
+import msgspec
+from msgspec.structs import asdict
 
 from beliefnest.episodes.shortcuts import CHANCE, rules_of, trained_rule
 from beliefnest.episodes.task import Task
@@ -36,8 +38,7 @@ Tally = tuple[int, int]
 """Number of won episodes, and of all."""
 
 
-@dataclass(frozen=True, slots=True)
-class Certificate:
+class Certificate(msgspec.Struct, frozen=True):
     """Results of a family at one order.
 
     Attributes:
@@ -64,7 +65,7 @@ class Certificate:
     siblings: int = 0
     groups: int = 0
     bound: float | None = None
-    rules: Mapping[str, Tally] = field(default_factory=dict)
+    rules: Mapping[str, Tally] = msgspec.field(default_factory=dict)
 
     @property
     def faults(self) -> list[str]:
@@ -90,8 +91,7 @@ class Certificate:
             name: {"won": won, "played": played, "interval": wilson_interval(won, played)}
             for name, (won, played) in self.rules.items()
         }
-        values = {name: getattr(self, name) for name in self.__slots__}
-        return {**values, "rules": rules, "certified": not self.faults, "faults": self.faults}
+        return {**asdict(self), "rules": rules, "certified": not self.faults, "faults": self.faults}
 
 
 def certified(
