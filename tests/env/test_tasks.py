@@ -18,6 +18,7 @@ from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.simple import Scripted
 from beliefnest.episodes.task import Task
 from beliefnest.nest.past import history
+from beliefnest.scenarios import instances
 
 pytest.importorskip("pettingzoo", reason="the extra `pettingzoo` is not installed")
 from gymnasium.vector import AutoresetMode
@@ -186,6 +187,35 @@ def test_a_skill_in_rounds_of_one_tick_takes_as_long_as_in_a_long_one(
     assert env.nest["/"].state.agents[agent].inventory == {"diamond": 1}
     assert env.nest.tick == ticks
     env.close()
+
+
+def test_given_values_are_warned_of_if_unlisted_and_refused_at_once_if_impossible(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lines = {
+        "parameters": {"near": {"default": 4, "values": [4, 5]}},
+        "instances": {"near": {}},
+        "containers": [{"at": ["${near}", 1, 2], "items": {"diamond": 1}}],
+    }
+    file = tmp_path / "hall.yaml"
+    file.write_text(json.dumps({**HALL, **lines}))
+    for load in (parallel_env, bn.Task.load, bn.Scenario.load):
+        given = {"near": 3} if load == bn.Task.load else {"parameters": {"near": 3}}
+        with pytest.warns(UserWarning, match="near: is given 3, and lists 4, 5"):
+            load(str(file), **given)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            load(str(file), **({"near": 5} if "near" in given else {"parameters": {"near": 5}}))
+    tried: list[object] = []
+
+    def fault(_: object, values: object) -> str:
+        tried.append(values)
+        return "full"
+
+    monkeypatch.setattr(instances._Drawing, "fault", fault)
+    with pytest.raises(bn.ScenarioError, match="nothing is drawn, and the given values fail: full"):
+        parallel_env(str(file), parameters={"near": 4})
+    assert tried == [{"near": 4}]
 
 
 class Fetches:

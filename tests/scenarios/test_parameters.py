@@ -114,8 +114,10 @@ def test_given_values_that_the_file_does_not_list_are_warned_of(tmp_path, values
     file = tmp_path / "room.yaml"
     parameters = PROGRAM.replace("PROGRAM", "think(bot, 'hm')")
     file.write_text(SCENE.replace("QUESTION", "${thing} ${count}") + parameters)
-    (warned,) = bn.Scenario.load(str(file), parameters=values).warnings
+    with pytest.warns(UserWarning) as given:
+        (warned,) = bn.Scenario.load(str(file), parameters=values).warnings
     assert told in str(warned)
+    assert [str(each.message) for each in given] == [str(warned)]
     assert not bn.Scenario.load(str(file), parameters={"thing": "bone", "count": 3}).warnings
 
 

@@ -242,14 +242,17 @@ def _named(
     """Return a scenario without a goal, or else a function that returns a task's instances."""
     from beliefnest.episodes.task import Task
     from beliefnest.scenarios.instances import has_instances
+    from beliefnest.scenarios.parameters import check_declared, declared_in
     from beliefnest.scenarios.rules import GoalEntry
-    from beliefnest.scenarios.scenario import Scenario
+    from beliefnest.scenarios.scenario import Scenario, warn_of_values
 
     document = Task.scenario_document(name)
     if document is None:
         return functools.partial(Task.load, name, condition=condition, **parameters)
     is_drawn = has_instances(document)
     scenario = Scenario.varied(document, condition, {} if is_drawn else parameters)
+    check_declared(document, declared_in(document, condition), parameters)
+    warn_of_values(document, condition, parameters)
     if scenario.rules is None or scenario.rules.goal == GoalEntry():
         return scenario
     if not is_drawn:

@@ -20,7 +20,7 @@ from beliefnest.scenarios.goals import Goal
 from beliefnest.scenarios.instances import drawn_instance, has_instances
 from beliefnest.scenarios.loading import DocumentChange, condition_number
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
-from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.scenario import Scenario, warn_of_values
 from beliefnest.scenarios.sources import builtin_names, read_document
 from beliefnest.scenarios.writing import content_text
 from beliefnest.version import VERSION
@@ -75,7 +75,10 @@ class Task:
             return cls.from_mapping(generated(name_or_path, seed, parameters), seed)
         document = _written(name_or_path)
         if _is_scenario(document):
-            return cls.instance_of(document, seed, condition_number(condition), parameters)
+            number = condition_number(condition)
+            task = cls.instance_of(document, seed, number, parameters)
+            warn_of_values(document, number, parameters)
+            return task
         _check_no_condition(name_or_path, condition)
         if parameters:
             raise InputError(f"{name_or_path} is a task and takes no {', '.join(parameters)}")

@@ -65,12 +65,16 @@ def drawn_instance(document: Document, seed: int, chosen: Mapping[str, object]) 
     drawing.check_agents(written.setting.snapshot.agents)
     chance = random.Random(f"{written.setting.name} {seed}")
     refused: Counter[str] = Counter()
-    for _ in range(_MOST_DRAWS):
+    # If all values are given, there is nothing that another draw would change.
+    draws = _MOST_DRAWS if drawing.rules else 1
+    for _ in range(draws):
         values = {**drawing.draw(chance), **chosen}
         fault = drawing.fault(values)
         if fault is None:
             return values
         refused[fault] += 1
+    if not drawing.rules:
+        raise document.fault((_KEY,), f"nothing is drawn, and the given values fail: {fault}")
     often = "; ".join(f"{rule} ({counted(n, 'time')})" for rule, n in refused.most_common(3))
     raise document.fault(
         (_KEY,), f"none of {_MOST_DRAWS} draws keeps the rules; most often broken: {often}"

@@ -143,7 +143,7 @@ def check_declared(
             raise document.fault(("parameters", name), "is None; give a value")
 
 
-def _beyond(
+def beyond(
     document: Document, declared: Mapping[str, ParameterEntry], values: Mapping[str, object]
 ) -> Iterator[str]:
     """Yield a line about each given value that its parameter does not list."""
@@ -188,7 +188,7 @@ def with_parameters(
         # A `${...}` that names nothing is refused here too; it would be shown to people.
         _Filling(document, {}).node(document.root, ())
         return document
-    notes = (*document.notes, *_unused(document, declared), *_beyond(document, declared, named))
+    notes = (*document.notes, *_unused(document, declared), *beyond(document, declared, named))
     document = replace(document, notes=notes)
     values = _resolved(
         document, {name: named.get(name, entry.default) for name, entry in declared.items()}

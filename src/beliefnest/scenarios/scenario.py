@@ -1,5 +1,6 @@
 """Scenarios: events in the real world, and probes and expectations about beliefs."""
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -7,7 +8,7 @@ from typing import Any, Self
 
 from msgspec.structs import replace
 
-from beliefnest.scenarios.content import ScenarioContent
+from beliefnest.scenarios.content import ScenarioContent, ScenarioWarning
 from beliefnest.scenarios.document import Document, wrapped
 from beliefnest.scenarios.loading import (
     DocumentChange,
@@ -15,6 +16,7 @@ from beliefnest.scenarios.loading import (
     condition_numbers,
     scenario_in,
 )
+from beliefnest.scenarios.parameters import beyond, declared_in
 from beliefnest.scenarios.sources import read_document
 from beliefnest.scenarios.yaml_reading import parse_yaml
 
@@ -41,7 +43,10 @@ class Scenario(ScenarioContent):
             UnknownNameError: There is neither a built-in scenario nor a file of that name.
             ScenarioError: The file is wrong, or the condition does not exist.
         """
-        return cls.varied(read_document(name_or_path), condition_number(condition), parameters)
+        document, number = read_document(name_or_path), condition_number(condition)
+        scenario = cls.varied(document, number, parameters)
+        warn_of_values(document, number, parameters or {})
+        return scenario
 
     @classmethod
     def load_all(cls, name_or_path: str) -> tuple[Self, ...]:
@@ -107,3 +112,11 @@ class Scenario(ScenarioContent):
             ScenarioError: This version cannot read the scenario.
         """
         return cls.varied(replace(parse_yaml(text, source), templates=templates), condition)
+
+
+def warn_of_values(
+    document: Document, condition: int | None, parameters: Mapping[str, object]
+) -> None:
+    """Warn of given values of parameters that their document does not list."""
+    for line in beyond(document, declared_in(document, condition), parameters):
+        warnings.warn(ScenarioWarning(line), stacklevel=3)
