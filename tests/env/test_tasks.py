@@ -1,5 +1,6 @@
 """Tasks as environments: their rules are those of episodes; copies; turns."""
 
+import copy
 import json
 import os
 import warnings
@@ -262,6 +263,39 @@ def test_the_conformance_tests_of_the_library_pass() -> None:
         turns = aec_env(hall, phrases=["yes"])
         api_test(turns, num_cycles=8)
         turns.close()
+
+
+def test_in_turns_a_wrong_action_is_refused_at_once_and_another_one_can_be_chosen() -> None:
+    with closing(aec_env(bn.Scenario.from_mapping(HALL), actions="flat", max_steps=2)) as turns:
+        turns.reset(seed=0)
+        for agent in ("ann", "bob"):
+            assert turns.agent_selection == agent
+            for wrong in (None, -1, "x"):
+                with pytest.raises(bn.InputError, match="is not in the action space"):
+                    turns.step(wrong)
+            assert turns.action_masks().tolist() == turns.last()[4]["action_mask"].tolist()
+            turns.step(1)
+        assert turns.unwrapped.nest.tick == 2
+        turns.step(2)
+        saved = turns.save()
+        ends = []
+        for _ in range(2):
+            turns.step(0)
+            ends.append([turns.agent_selection, *map(str, turns.last()), dict(turns.rewards)])
+            with pytest.raises(bn.InputError, match="over for ann: step with None, or reset"):
+                turns.step(0)
+            turns.step(None)
+            turns.step(None)
+            with pytest.raises(
+                bn.InputError, match=r"over, and no agent has a turn: call reset\(\)"
+            ):
+                turns.last()
+            turns.restore(saved)
+            assert turns.agent_selection == "bob"
+        assert ends[0] == ends[1]
+        with closing(copy.deepcopy(turns)) as other:
+            other.step(0)
+            assert [other.agent_selection, *map(str, other.last()), other.rewards] == ends[0]
 
 
 def test_copies_are_stepped_together_and_begin_again() -> None:

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal
 from beliefnest.errors import InputError, MissingExtraError
 
 if TYPE_CHECKING:  # Imported when an environment is made.
-    from pettingzoo import AECEnv
-
     from beliefnest.env.bounds import Phrases
     from beliefnest.env.environment import BeliefEnv
     from beliefnest.env.learners import LearnerEnv
     from beliefnest.env.options import EnvironmentOptions
     from beliefnest.env.playing import Instances
+    from beliefnest.env.turns import TurnsEnv
     from beliefnest.env.vector import BeliefVectorEnv
     from beliefnest.episodes.task import Task
     from beliefnest.nest.face.nest import Nest
@@ -131,19 +130,19 @@ def parallel_env(
     return made(source, options)
 
 
-def aec_env(scenario: "str | Scenario | Task", **options: Any) -> "AECEnv[str, Any, Any]":
+def aec_env(scenario: "str | Scenario | Task", **options: Any) -> "TurnsEnv":
     """Return a scenario or a task as a PettingZoo environment in which agents act in turn.
 
-    The world moves when all agents have chosen.
+    The world moves when all agents have chosen. `unwrapped` is the parallel environment.
 
     Args:
         scenario: As for `parallel_env`.
         options: Arguments of `parallel_env`.
     """
     env = parallel_env(scenario, **options)
-    from pettingzoo.utils.conversions import parallel_to_aec
+    from beliefnest.env.turns import TurnsEnv
 
-    return parallel_to_aec(env)
+    return TurnsEnv(env)
 
 
 def vector_env(

@@ -535,6 +535,12 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             self.render()
         return observations, rewards, terminations, truncations, infos
 
+    def check_action(self, agent: str, action: Any) -> None:
+        """Raise InputError if an agent does not act now, or an action is not in its space."""
+        if agent not in self.agents:
+            raise InputError(f"{agent!r} does not act now; agents are {self.agents}")
+        self._chosen(agent, {agent: action})
+
     def _chosen(self, agent: str, actions: Mapping[str, Any]) -> Choice:
         """Return what an agent begins; nothing if it has no action, or one of nothing known."""
         nothing = "" if self._options.actions == "programs" else Call("doNothing")
