@@ -12,7 +12,7 @@ from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import XY, Drawing, Rectangle
 from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, PAPER, QUIET, AgentLook, Mark, agent_looks, mix
-from beliefnest.pictures.panel import PanelBlock, paragraph
+from beliefnest.pictures.panel import PanelBlock, false_line, paragraph
 from beliefnest.pictures.plan import DrawnPlan, SignKind, draw_plan
 from beliefnest.pictures.scene import Scene, Store
 
@@ -237,15 +237,10 @@ def _card(card: Card, at: XY, width: float) -> PanelBlock:
 
 
 def _note(block: PanelBlock, note: Note, left: float, width: float) -> None:
-    if not note.false:
+    if note.false:
+        false_line(block, note.text, left, left + width, TEXT_SIZE, INK)
+    else:
         paragraph(block, note.text, left, width, TEXT_SIZE)
-        return
-    radius = TEXT_SIZE * 0.34
-    at = (left + radius * 1.35, block.bottom + TEXT_SIZE * 0.45)
-    block.marks += icons.false_sign(at, radius)
-    block.kinds.add("false")
-    inset = radius * 3.6
-    paragraph(block, note.text, left + inset, width - inset, TEXT_SIZE)
 
 
 def _store(block: PanelBlock, store: Store, left: float, width: float) -> None:

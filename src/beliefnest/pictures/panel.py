@@ -18,6 +18,8 @@ _LINE = 1.32
 _MOST = 12
 """Number of containers that are listed; further ones are only counted."""
 
+_FALSE_INK = mix(MARKS[Mark.FALSE].colour, INK, 0.35)
+
 
 @dataclass
 class PanelBlock:
@@ -161,7 +163,7 @@ def _store_line(
     top = block.bottom
     paragraph(block, text, inner, width - icon * 1.55, size)
     if store.mark is Mark.FALSE:
-        _false_line(block, f"{_place_words(against)}: {store.instead}", inner, left + width, size)
+        false_line(block, f"{_place_words(against)}: {store.instead}", inner, left + width, size)
     block.bottom = max(block.bottom, top + icon + 2.2) + 0.8
 
 
@@ -179,7 +181,7 @@ def _device_line(
     note = f" ({source_words})" if source_words else ""
     where = f"({', '.join(map(str, shown.position))})"
     paragraph(block, f"{where}: {believed}{note}", inner, width - icon * 1.55, size)
-    _false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)
+    false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)
     block.bottom = max(block.bottom, top + icon + 2.2) + 0.8
 
 
@@ -206,17 +208,20 @@ def _person_line(
     inner, top = left + size * 1.78, block.bottom
     believed, instead = wrong
     paragraph(block, f"{look.name}: {believed}", inner, width - size * 1.78, size)
-    _false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)
+    false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)
     block.bottom = max(block.bottom, top + 2 * radius) + 0.8
 
 
-def _false_line(block: PanelBlock, text: str, left: float, right: float, size: float) -> None:
+def false_line(
+    block: PanelBlock, text: str, left: float, right: float, size: float, colour: str = _FALSE_INK
+) -> None:
+    """Append lines of text with the sign of what is false before them."""
     radius = size * 0.34
     at = (left + radius * 1.35, block.bottom + size * 0.45)
     block.marks += icons.false_sign(at, radius)
     block.kinds.add("false")
     inner = left + radius * 3.6
-    paragraph(block, text, inner, right - inner, size, mix(MARKS[Mark.FALSE].colour, INK, 0.35))
+    paragraph(block, text, inner, right - inner, size, colour)
 
 
 def _lost_line(

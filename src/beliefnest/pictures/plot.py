@@ -177,9 +177,14 @@ def _swatch(chart: _Chart, words: str, at: XY, wide: float, high: float) -> list
 
 def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:
     x, top = at
-    entries = [*chart.fills, *([""] if chart.unknown else [])]
+    told = {f"told, and{'' if each else ' not'} believed": each for each in chart.told}
     wide, high = 13.0, TEXT_SIZE * 1.15
-    for words in [*entries, *(["false"] if chart.false else [])]:
+    for words in [
+        *chart.fills,
+        *([""] if chart.unknown else []),
+        *(["false"] if chart.false else []),
+        *sorted(told),
+    ]:
         label = words or MARKS[Mark.UNKNOWN].words
         false = words == "false" and words not in chart.fills
         label = "false: reality is otherwise" if false else label
@@ -191,17 +196,11 @@ def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:
             colour = MARKS[Mark.FALSE].colour
             marks.append(Rectangle(x, top, wide, high, None, colour, 1.1))
             marks += icons.false_sign((x + wide / 2, top + high / 2), 2.6)
+        elif words in told and words not in chart.fills:
+            at_sign = (x + wide / 2, top + high * 0.42)
+            marks += icons.hearsay(at_sign, high * 0.4, believed=told[words])
         else:
             marks += _swatch(chart, words, (x, top), wide, high)
-        base = top + high / 2 + TEXT_SIZE * ASCENT * 0.48
-        marks.append(Text(x + wide + 3, base, label, TEXT_SIZE, QUIET))
-        x += taken + TEXT_SIZE * 1.5
-    for believed in sorted(chart.told, reverse=True):
-        label = "told, and believed" if believed else "told, and not believed"
-        taken = wide + 3 + text_width(label, TEXT_SIZE)
-        if x > at[0] and x + taken > at[0] + width:
-            x, top = at[0], top + high * 1.5
-        marks += icons.hearsay((x + wide / 2, top + high * 0.42), high * 0.4, believed=believed)
         base = top + high / 2 + TEXT_SIZE * ASCENT * 0.48
         marks.append(Text(x + wide + 3, base, label, TEXT_SIZE, QUIET))
         x += taken + TEXT_SIZE * 1.5

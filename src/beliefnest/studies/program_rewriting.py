@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
+from beliefnest.llm.offline.program_texts import vector
 from beliefnest.skills.javascript import nodes_below, parsed
 from beliefnest.world.texts import quoted
 
@@ -108,8 +109,7 @@ def _vector(
         )
     x, y, z = (number or 0 for number in numbers)
     new = change((x, y, z), _is_direction(node))
-    written = f"new Vec3({', '.join(map(_written, new))})"
-    return [(node.start_byte, node.end_byte, written)]
+    return [(node.start_byte, node.end_byte, vector(new))]
 
 
 def _is_direction(node: _Node) -> bool:
@@ -124,10 +124,6 @@ def _number(node: _Node) -> float | int | None:
     if not re.fullmatch(r"[+-]?\d+(\.\d*)?", text):
         return None
     return float(text) if "." in text else int(text)
-
-
-def _written(value: float) -> str:
-    return str(int(value)) if value == int(value) else repr(value)
 
 
 def _is_numbers(node: _Node) -> bool:

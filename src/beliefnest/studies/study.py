@@ -15,7 +15,7 @@ from beliefnest.llm.resolve import check_model, check_structured
 from beliefnest.locking import holding
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.plan.cells import C, Plan
-from beliefnest.plan.jobs import OnStudyProgress, StudyProgress, run_cells
+from beliefnest.plan.jobs import OnStudyProgress, run_cells
 from beliefnest.plan.scenario_cells import LABEL, Cell
 from beliefnest.plan.terms import Terms
 from beliefnest.prompts.templates import Template
@@ -238,7 +238,7 @@ class Study:
         """
         if self._plan is None:
             with self._naming():
-                self._plan = self._planned(on_item or _say_nothing_of_items)
+                self._plan = self._planned(on_item or _say_nothing)
         return self._plan
 
     def _planned(self, on_item: OnItem, *, lists: bool = True) -> Plan[Cell] | Plan[EpisodeCell]:
@@ -368,7 +368,7 @@ class Study:
             None if ending is None else Path(ending),
             title,
             post,
-            on_item or _say_nothing_of_items,
+            on_item or _say_nothing,
         )
 
     def read_participants(
@@ -415,7 +415,7 @@ class Study:
             self._documents,
             [Path(each) for each in files],
             name,
-            on_item or _say_nothing_of_items,
+            on_item or _say_nothing,
             pseudonyms=pseudonyms,
             exclude=None if exclude is None else Path(exclude),
         )
@@ -498,7 +498,7 @@ class Study:
             BeliefNestError: A script failed.
         """
         _, cells = self._scenarios()
-        say = on_item or _say_nothing_of_items
+        say = on_item or _say_nothing
         return played_otherwise(cells, self._documents, items.items, scenes, say)
 
     def _scenarios(self, on_item: OnItem | None = None) -> tuple[Design, Sequence[Cell]]:
@@ -534,7 +534,7 @@ class Study:
         """Return the groups of planned rows that `power` simulates; raise as `power` does."""
         # Balancing plays every scene, and changes no number of rows.
         with self._naming():
-            planned = self._plan or self._planned(_say_nothing_of_items, lists=False)
+            planned = self._plan or self._planned(_say_nothing, lists=False)
         plan, names = self._plan_json(planned), self._columns(planned)
         rows = list(self._kind.table.planned(plan))
         varied = {name for name in names if len({row[name] for row in rows}) > 1}
@@ -721,9 +721,5 @@ def _two(shard: object) -> tuple[int, int]:
     )
 
 
-def _say_nothing_of_items(what: str, done: int, total: int) -> None:
-    """Ignore progress."""
-
-
-def _say_nothing(progress: StudyProgress) -> None:
+def _say_nothing(*_: object) -> None:
     """Ignore progress."""

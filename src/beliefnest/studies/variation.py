@@ -52,7 +52,7 @@ class Variation(msgspec.Struct, frozen=True):
     @property
     def text(self) -> str:
         """Return the variation in words, for people."""
-        parts = (f"{name} {_short(value)}" for name, value in self.values.items())
+        parts = (f"{name} {short(value)}" for name, value in self.values.items())
         return ", ".join(parts) or "as written"
 
     def scenario(self, document: Document, condition: int | None) -> Scenario:
@@ -105,7 +105,8 @@ class Variation(msgspec.Struct, frozen=True):
         return names
 
 
-def _short(value: object) -> str:
+def short(value: object) -> str:
+    """Return a value of a variation as a text for people; texts stay as they are."""
     return value if isinstance(value, str) else json.dumps(value)
 
 

@@ -128,7 +128,7 @@ def put_block(
             f"{name} cannot be put in the scripted world: it is no block, or its state depends on "
             'the pose of the agent; open the nest with world="embedded" for that'
         )
-    around = (state_at(_beside(place, side)) for side in _SIDES)
+    around = (state_at(plus(place, side)) for side in _SIDES)
     is_held = any(registry.boxes(each) for each in around)
     if state_at(place) not in registry.airs or not is_held:
         raise WorldError(
@@ -144,7 +144,7 @@ def put_block(
 def check_holds_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:
     """Raise WorldError if a neighbour of a block may come off together with it."""
     for side in _SIDES:
-        other = _beside(place, side)
+        other = plus(place, side)
         name = registry.name(state_at(other))
         if name.endswith(_NEEDS_HOLDER):
             raise WorldError(
@@ -158,8 +158,9 @@ def with_power(registry: Registry, state: int, *, powered: bool) -> int:
     return registry.changed(state, powered=str(powered).lower())
 
 
-def _beside(place: Position, side: tuple[int, int, int]) -> Position:
-    return (place[0] + side[0], place[1] + side[1], place[2] + side[2])
+def plus(place: Position, step: tuple[int, int, int]) -> Position:
+    """Return the position one step from another."""
+    return (place[0] + step[0], place[1] + step[1], place[2] + step[2])
 
 
 def _overlaps(box: tuple[float, ...], place: Position, feet: Point) -> bool:

@@ -34,18 +34,11 @@ class Worlds:
 
     Args:
         seed: Seed of the worlds' own random numbers.
-        limits: Limits of the process of each world.
-        begun: Worlds that were made earlier with the same seed and limits, by name.
+        begun: Worlds that were made earlier with the same seed, by name.
     """
 
-    def __init__(
-        self,
-        seed: int,
-        limits: ProcessLimits | None = None,
-        begun: Mapping[str, World] | None = None,
-    ) -> None:
+    def __init__(self, seed: int, begun: Mapping[str, World] | None = None) -> None:
         self._seed = seed
-        self._limits = limits
         self._worlds = dict(begun or {})
 
     def __enter__(self) -> Self:
@@ -64,7 +57,7 @@ class Worlds:
             UnknownNameError: There is no world of that name.
         """
         if name not in self._worlds:
-            self._worlds[name] = maker_of(name)(self._seed, self._limits)
+            self._worlds[name] = maker_of(name)(self._seed, None)
         self._worlds[name].start()
         return _SharedWorld(self._worlds[name])
 

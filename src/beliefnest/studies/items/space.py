@@ -20,7 +20,7 @@ from beliefnest.studies.design import Design
 from beliefnest.studies.items.making import made_items
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord
 from beliefnest.studies.random_variations import endless_draws
-from beliefnest.studies.variation import CHANGES, Variation
+from beliefnest.studies.variation import CHANGES, Variation, short
 
 ORDER = "order"
 """Factor of the number of agents in the belief path of a question."""
@@ -75,7 +75,7 @@ class ItemSpace:
         for name, entry in declared_in(document).items():
             if name in self._lists or isinstance(self.design.variations, int):
                 levels[name] = self._lists.get(name) or choices(entry) or ()
-        by_text = {name: {_text(each): each for each in own} for name, own in levels.items()}
+        by_text = {name: {short(each): each for each in own} for name, own in levels.items()}
         return {name: own for name, own in by_text.items() if len(own) > 1}
 
     @property
@@ -169,7 +169,3 @@ def _contrasts(factor: str, levels: Mapping[str, Any]) -> Iterator[Contrast]:
     elif len(levels) > 1:
         for each in levels:
             yield Contrast(factor, each, tuple(other for other in levels if other != each))
-
-
-def _text(level: object) -> str:
-    return level if isinstance(level, str) else json.dumps(level)

@@ -7,6 +7,7 @@ about blocks; `tests/worlds/test_circuits.py` compares them on random circuits.
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from beliefnest.world.circuits import Circuits
+from beliefnest.world.handling import plus
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
@@ -129,7 +130,7 @@ class Circuit:
         """Return True if a source is attached to a block."""
         for beside in _beside(place):
             strong = self._facts.sources.get(self._at(beside), -1)
-            if strong >= 0 and _plus(beside, FACES[strong]) == place:
+            if strong >= 0 and plus(beside, FACES[strong]) == place:
                 return True
         return False
 
@@ -144,24 +145,24 @@ class Circuit:
 
     def _feeders(self, place: Position) -> Iterator[Position]:
         """Yield the wires from which a wire gets power."""
-        covered = self._conducts(_plus(place, _UP))
+        covered = self._conducts(plus(place, _UP))
         for step in _SIDES.values():
-            beside = _plus(place, step)
+            beside = plus(place, step)
             if self._is_wire(beside):
                 yield beside
             elif not self._conducts(beside):
-                if self._is_wire(below := _plus(beside, _DOWN)):
+                if self._is_wire(below := plus(beside, _DOWN)):
                     yield below
-            elif not covered and self._is_wire(above := _plus(beside, _UP)):
+            elif not covered and self._is_wire(above := plus(beside, _UP)):
                 yield above
 
     def _connection(self, place: Position, side: str) -> str:
         """Return how a wire connects to a side: `none`, `side` or `up`."""
-        beside = _plus(place, _SIDES[side])
-        climbs = self._is_wire(_plus(beside, _UP)) and not self._conducts(_plus(place, _UP))
+        beside = plus(place, _SIDES[side])
+        climbs = self._is_wire(plus(beside, _UP)) and not self._conducts(plus(place, _UP))
         if climbs and self._registry.boxes(self._at(beside)):
             return "up"
-        falls = not self._conducts(beside) and self._is_wire(_plus(beside, _DOWN))
+        falls = not self._conducts(beside) and self._is_wire(plus(beside, _DOWN))
         return "side" if falls or self._at(beside) in self._facts.connecting else "none"
 
     def _connections(self, place: Position) -> dict[str, str]:
@@ -221,19 +222,15 @@ class Circuit:
 
 def _around(places: Iterable[Position]) -> list[Position]:
     """Return the positions within two steps of some positions, in order."""
-    return sorted({_plus(place, step) for place in places for step in _NEAR})
+    return sorted({plus(place, step) for place in places for step in _NEAR})
 
 
 def _beside(place: Position) -> list[Position]:
-    return [_plus(place, step) for step in FACES]
+    return [plus(place, step) for step in FACES]
 
 
 def _level(place: Position) -> list[Position]:
-    return [_plus(place, step) for step in _SIDES.values()]
-
-
-def _plus(place: Position, step: Offset) -> Position:
-    return (place[0] + step[0], place[1] + step[1], place[2] + step[2])
+    return [plus(place, step) for step in _SIDES.values()]
 
 
 def may_be_of_power(registry: Registry, before: int, after: int) -> bool:
