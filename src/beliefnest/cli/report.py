@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from beliefnest.scenarios.inferring import means_text
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.scenarios.naming import container_name
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
-from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
+from beliefnest.scenarios.records import expectation_json, probe_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import Placements, Point, Position
 from beliefnest.world.words import point_text
@@ -57,7 +58,7 @@ def outcome_json(
         "expectations": [expectation_json(each) for each in outcome.expectations],
         "probes": probes,
         "failures": list(outcome.failures),
-        "usage": usage_json(outcome.usage),
+        "usage": asdict(outcome.usage),
         "run_dir": str(run_dir),
         "table": {"cells": _cells(outcome), "notes": _notes(outcome)},
     }

@@ -1,6 +1,5 @@
 """Cache of answers in a folder, so that a run can be repeated without the model."""
 
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
@@ -8,15 +7,9 @@ from typing import Literal
 import msgspec
 
 from beliefnest.errors import ModelError
-from beliefnest.files import read_regular
+from beliefnest.files import read_regular, replace_file
 from beliefnest.llm.messages import Answer, Message, Sampling, WrappedModel
-from beliefnest.llm.stored_exchange import (
-    Exchange,
-    decode_exchange,
-    encode_exchange,
-    exchange_of,
-    request_key,
-)
+from beliefnest.llm.stored_exchange import Exchange, decode_exchange, exchange_of, request_key
 
 CacheMode = Literal["read", "only", "write", "off"]
 """Mode of the cache. `read`: use cached answers, ask for the others and store them. `only`:
@@ -69,11 +62,9 @@ def _read(path: Path) -> Exchange | None:
 
 
 def _write(path: Path, exchange: Exchange) -> None:
-    """Write the file atomically: a run may be killed, and others may be reading."""
+    # As a whole: a run may be killed, and others may be reading.
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            file.write(encode_exchange(exchange))
-        Path(file.name).replace(path)
+        replace_file(path, msgspec.json.encode(exchange))
     except OSError as error:
         raise ModelError(f"the answer cannot be stored in {path}: {error}") from None

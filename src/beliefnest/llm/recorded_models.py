@@ -11,7 +11,7 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Sampling, WrappedModel
-from beliefnest.llm.stored_exchange import Exchange, decode_exchange, encode_exchange, exchange_of
+from beliefnest.llm.stored_exchange import Exchange, decode_exchange, exchange_of
 
 _Question = tuple[Message, ...]
 
@@ -86,7 +86,7 @@ class FileRecordingModel(WrappedModel, frozen=True):
         try:
             self.file.parent.mkdir(parents=True, exist_ok=True)
             with self.file.open("ab") as file:
-                file.write(encode_exchange(exchange) + b"\n")
+                file.write(msgspec.json.encode(exchange) + b"\n")
         except OSError as error:
             raise ModelError(f"the recording {self.file} cannot be written: {error}") from None
         return answer

@@ -62,11 +62,6 @@ def exchange_of(
     )
 
 
-def encode_exchange(exchange: Exchange) -> bytes:
-    """Encode an exchange as one line of JSON without the line end."""
-    return msgspec.json.encode(exchange)
-
-
 def decode_exchange(line: bytes) -> Exchange:
     """Decode an exchange from its line.
 

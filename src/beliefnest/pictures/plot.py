@@ -177,13 +177,13 @@ def _swatch(chart: _Chart, words: str, at: XY, wide: float, high: float) -> list
 
 def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:
     x, top = at
-    told = {f"told, and{'' if each else ' not'} believed": each for each in chart.told}
+    claims = {f"told, and{'' if each else ' not'} believed": each for each in chart.told}
     wide, high = 13.0, TEXT_SIZE * 1.15
     for words in [
         *chart.fills,
         *([""] if chart.unknown else []),
         *(["false"] if chart.false else []),
-        *sorted(told),
+        *sorted(claims),
     ]:
         label = words or MARKS[Mark.UNKNOWN].words
         false = words == "false" and words not in chart.fills
@@ -196,9 +196,9 @@ def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:
             colour = MARKS[Mark.FALSE].colour
             marks.append(Rectangle(x, top, wide, high, None, colour, 1.1))
             marks += icons.false_sign((x + wide / 2, top + high / 2), 2.6)
-        elif words in told and words not in chart.fills:
+        elif words in claims and words not in chart.fills:
             at_sign = (x + wide / 2, top + high * 0.42)
-            marks += icons.hearsay(at_sign, high * 0.4, believed=told[words])
+            marks += icons.hearsay(at_sign, high * 0.4, believed=claims[words])
         else:
             marks += _swatch(chart, words, (x, top), wide, high)
         base = top + high / 2 + TEXT_SIZE * ASCENT * 0.48

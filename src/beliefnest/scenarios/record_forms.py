@@ -16,7 +16,7 @@ _Place = tuple[float, float, float]
 
 
 class UsageForm(msgspec.Struct):
-    """Usage of answers, as `usage_json` writes it."""
+    """Usage of answers, as plain values."""
 
     requests: int
     input_tokens: int

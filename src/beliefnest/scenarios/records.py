@@ -6,15 +6,9 @@ from pathlib import Path
 
 import msgspec
 
-from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.outcome import ExpectationOutcome, ProbeOutcome, Reply
 from beliefnest.world.values import Placements, Point
-
-
-def usage_json(usage: Usage) -> dict[str, object]:
-    """Return the usage of answers as plain values."""
-    return asdict(usage)
 
 
 def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
@@ -54,7 +48,7 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
         "program": outcome.program,
         "attempts": outcome.attempts,
         "asked_again": outcome.asked_again,
-        "usage": usage_json(outcome.usage),
+        "usage": asdict(outcome.usage),
         "error": None if outcome.error is None else str(outcome.error),
         "said": [] if result is None else [list(line) for line in result.said],
         "lines": [] if result is None else list(result.lines),

@@ -7,6 +7,7 @@ States, explanations and recorded runs only read.
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from copy import copy
+from threading import RLock
 from typing import Self
 
 from beliefnest.belief.context import BeliefContext
@@ -16,8 +17,7 @@ from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.nest.past.summed_state import StateSums
 from beliefnest.nest.past.timeline_state import TimelineState
-from beliefnest.nest.past.turn import Turn
-from beliefnest.owned import Barred, is_own
+from beliefnest.owned import Barred, Owned, is_own
 from beliefnest.prompts import Renderer
 from beliefnest.prompts.mind_view import ToldMind
 from beliefnest.timeline.bounds import RunBounds
@@ -27,6 +27,28 @@ from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
+
+
+class Turn(Owned):
+    """Lock that a thread holds while it uses a nest: a reentrant context manager.
+
+    Raises:
+        ForkedError: Another process opened the nest.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lock = RLock()
+
+    def __enter__(self) -> None:
+        # Check the process first: after a fork the lock may be held by a thread that the child
+        # does not have.
+        self.check_own("the nest")
+        self._lock.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        if self.is_own:
+            self._lock.release()
 
 
 class Recording(Barred):
