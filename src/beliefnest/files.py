@@ -163,16 +163,21 @@ def new_file(path: Path) -> Iterator[BinaryIO]:
     """Open a file that does not exist yet for the block to write; remove it if the block raises.
 
     Raises:
-        OSError: The file exists already, or it cannot be written.
+        InputError: The file exists already, or it cannot be written.
     """
-    with path.open("xb") as file:
+    with os_errors_of(path, "written"):
         try:
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
-        except BaseException:
-            path.unlink(missing_ok=True)
-            raise
+            opened = path.open("xb")
+        except FileExistsError:
+            raise InputError(f"{path} exists already; choose another name") from None
+        with opened as file:
+            try:
+                yield file
+                file.flush()
+                os.fsync(file.fileno())
+            except BaseException:
+                path.unlink(missing_ok=True)
+                raise
 
 
 def _sync_folder(folder: Path) -> None:

@@ -159,7 +159,7 @@ def test_play_exports_once(own: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert run_command_line(command) == 0
     assert run_command_line(["play", "help.yaml", "--agent", "anne=search:1"]) == 0
     assert run_command_line(command) == 2
-    assert "help.yaml exists; name a new file" in capsys.readouterr().err
+    assert "help.yaml exists already; choose another name" in capsys.readouterr().err
 
 
 def test_classes_and_functions_play_by_their_names(

@@ -7,7 +7,7 @@ from pathlib import Path
 from beliefnest.cli.options import CaptureOptions
 from beliefnest.cli.terminal_text import printable, say
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.files import new_file, os_errors_of, read_regular
+from beliefnest.files import new_file, read_regular
 from beliefnest.scenarios.sources import scenario_name
 from beliefnest.scenarios.writing import scenario_text
 from beliefnest.world.texts import quoted
@@ -35,7 +35,7 @@ def write_capture(options: CaptureOptions) -> None:
     captured = _captured(options)
     name = options.name or scenario_name(out.stem)
     text = scenario_text(name, _description(options), captured.snapshot)
-    with os_errors_of(out, "written"), new_file(out) as file:
+    with new_file(out) as file:
         file.write(text.encode())
     for sentence in captured.left_out:
         sys.stderr.write(printable(f"left out: {sentence}") + "\n")

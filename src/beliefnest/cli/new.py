@@ -21,11 +21,6 @@ def write_starter(name: str) -> None:
         raise InputError(f"{name!r} is the name of a built-in scenario; choose another")
     text = (files("beliefnest.scenarios") / "starter" / "starter.yaml").read_text(encoding="utf-8")
     path = Path(f"{name}.yaml")
-    try:
-        with new_file(path) as file:
-            file.write(text.replace("{name}", name).encode())
-    except FileExistsError:
-        raise InputError(f"{path} exists already; choose another name") from None
-    except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror}") from None
+    with new_file(path) as file:
+        file.write(text.replace("{name}", name).encode())
     say(f"{path} is written; run it with: beliefnest run {path}\n")

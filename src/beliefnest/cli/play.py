@@ -79,13 +79,8 @@ def play_task(options: PlayOptions) -> int:
 
 def _export(task: Task, file: Path) -> int:
     """Write a task as a scenario file, which must be new."""
-    try:
-        with new_file(file) as out:
-            out.write(task.text().encode())
-    except FileExistsError:
-        raise InputError(f"{file} exists; name a new file") from None
-    except OSError as error:
-        raise InputError(f"{file} cannot be written: {error.strerror}") from None
+    with new_file(file) as out:
+        out.write(task.text().encode())
     stdout().print(
         f"wrote {file}; play it with `beliefnest play {file}`", markup=False, soft_wrap=True
     )

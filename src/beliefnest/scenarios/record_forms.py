@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import decode_json, read_regular
+from beliefnest.files import decode_json, os_errors_of, read_regular
 
 T = TypeVar("T")
 _Place = tuple[float, float, float]
@@ -85,9 +85,8 @@ def read_json(file: Path, remedy: str) -> dict[str, Any]:
         InputError: The file cannot be read, or holds something else.
     """
     try:
-        return decode_json(read_regular(file), dict[str, Any])
-    except OSError as error:
-        raise InputError(f"{file} cannot be read: {error.strerror}; {remedy}") from None
+        with os_errors_of(file, "read", remedy):
+            return decode_json(read_regular(file), dict[str, Any])
     except msgspec.MsgspecError as error:
         raise InputError(f"{file} is damaged: {_plain(error)}; {remedy}") from None
 

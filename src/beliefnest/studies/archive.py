@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import open_regular, read_regular, replacing
+from beliefnest.files import open_regular, os_errors_of, read_regular, replacing
 from beliefnest.llm.secrets import Secrets
 from beliefnest.scenarios.record_forms import read_json
 from beliefnest.studies.comparing import ADDED, HASH, PairedDifference
@@ -96,17 +96,18 @@ def write_zip(files: Mapping[str, bytes], out: Path) -> None:
             f"{out} would hold {len(files):,} files; a supplement has at most {_MOST_FILES:,}: "
             "bundle the study in parts"
         )
-    try:
-        with replacing(out) as file, zipfile.ZipFile(file, "w") as archive:
-            for name in sorted(files):
-                entry = zipfile.ZipInfo(name, _EPOCH)
-                entry.compress_type = zipfile.ZIP_DEFLATED
-                # Otherwise the system that writes is in the bytes.
-                entry.create_system = 3
-                entry.external_attr = 0o644 << 16
-                archive.writestr(entry, files[name], compresslevel=9)
-    except OSError as error:
-        raise InputError(f"{out} cannot be written: {error.strerror}") from None
+    with (
+        os_errors_of(out, "written"),
+        replacing(out) as file,
+        zipfile.ZipFile(file, "w") as archive,
+    ):
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, _EPOCH)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            # Otherwise the system that writes is in the bytes.
+            entry.create_system = 3
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, files[name], compresslevel=9)
 
 
 class _InParts(io.BufferedReader):

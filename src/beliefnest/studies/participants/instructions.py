@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular_text
+from beliefnest.files import os_errors_of, read_regular_text
 from beliefnest.studies.participants.items import Item
 
 _SCENE = (
@@ -79,9 +79,8 @@ def read_instructions(file: Path) -> list[list[dict[str, Any]]]:
         InputError: The file cannot be read, or has no text.
     """
     try:
-        text = read_regular_text(file)
-    except OSError as error:
-        raise InputError(f"{file} cannot be read: {error.strerror}") from None
+        with os_errors_of(file, "read"):
+            text = read_regular_text(file)
     except UnicodeDecodeError:
         raise InputError(f"{file} is not UTF-8; save it as UTF-8") from None
     pages = _pages(text)

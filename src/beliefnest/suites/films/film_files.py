@@ -11,7 +11,7 @@ import msgspec
 from msgspec.structs import replace
 
 from beliefnest.errors import InputError
-from beliefnest.files import decode_json, read_regular
+from beliefnest.files import decode_json, os_errors_of, read_regular
 from beliefnest.minds.infer_entries import MOST_HYPOTHESES
 from beliefnest.studies.checking import is_whole
 from beliefnest.suites.films.film import (
@@ -49,9 +49,8 @@ def read_films(path: str | Path) -> tuple[list[Film], FilmParameters]:
         InputError: The file is missing or not of the form; the message names the film.
     """
     try:
-        content = decode_json(read_regular(Path(path)), dict[str, Any])
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from None
+        with os_errors_of(path, "read"):
+            content = decode_json(read_regular(Path(path)), dict[str, Any])
     except msgspec.DecodeError as error:
         raise InputError(f"{path} holds no films in JSON: {error}") from None
     try:

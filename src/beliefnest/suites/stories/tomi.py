@@ -4,7 +4,7 @@ from collections.abc import Collection
 from pathlib import Path
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular_text
+from beliefnest.files import os_errors_of, read_regular_text
 from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.grammar import Line, parse_line
 from beliefnest.suites.stories.played_story import check_question
@@ -29,9 +29,8 @@ def read_tomi(path: Path, rows: Collection[int] | None = None) -> ReadStories:
         InputError: The file does not exist, or lacks a question at a line of `rows`.
     """
     try:
-        text = read_regular_text(path)
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}; give a text file") from None
+        with os_errors_of(path, "read", "give a text file"):
+            text = read_regular_text(path)
     except UnicodeDecodeError as error:
         line = error.object.count(b"\n", 0, error.start) + 1
         raise InputError(f"{path}, line {line}: it is not UTF-8 text: {error.reason}") from None
