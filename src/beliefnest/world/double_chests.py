@@ -39,17 +39,23 @@ def is_left_half(registry: Registry, state: int) -> bool:
 
 def other_half(registry: Registry, state: int, place: Position) -> tuple[Position, int] | None:
     """Return position and state of the other half of a half at a place; None if it is none."""
+    if (other := _other_half(registry, state)) is None:
+        return None
+    (x, y, z), half = other
+    return (place[0] + x, place[1] + y, place[2] + z), half
+
+
+@cache
+def _other_half(registry: Registry, state: int) -> tuple[Position, int] | None:
     if state < 0 or registry.name(state) not in _CHESTS:
         return None
     properties = registry.properties(state)
-    kind = properties["type"]
-    if kind not in _TYPES:
+    if (kind := properties["type"]) not in _TYPES:
         return None
     x, y, z = _TO_RIGHT[properties["facing"]]
-    sign = 1 if kind == "left" else -1
-    there = (place[0] + sign * x, place[1] + y, place[2] + sign * z)
+    step = (x, y, z) if kind == "left" else (-x, -y, -z)
     # What else differs, such as water in one half, does not part them.
-    return there, registry.changed(state, type=_TYPES[kind], waterlogged="false")
+    return step, registry.changed(state, type=_TYPES[kind], waterlogged="false")
 
 
 def is_double(registry: Registry, state_at: StateAt, place: Position) -> bool:
