@@ -1,14 +1,16 @@
 """Spaces that learners take, with nested beliefs in them; states, pictures, ends of episodes."""
 
+import json
 import warnings
 from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import beliefnest as bn
-from beliefnest.env import aec_env, parallel_env, vector_env
+from beliefnest.env import aec_env, parallel_env, sb3_env, vector_env
 
 pytest.importorskip("pettingzoo", reason="the extra `pettingzoo` is not installed")
 from gymnasium import spaces
@@ -168,9 +170,6 @@ def test_pictures_have_one_size_and_show_what_is_asked_for() -> None:
         copies.reset(seed=0)
         assert copies.render_mode == "rgb_array"
         assert [np.array_equal(each, shown["/ann"]) for each in copies.render()] == [True] * 3
-    with closing(room()) as env:
-        env.reset(seed=0)
-        assert env.render() is None
     with pytest.raises(bn.InputError, match="render_mode is 'ansi'; it is human or rgb_array"):
         room(render_mode="ansi")
     with pytest.raises(bn.PathError, match="carl"):
@@ -228,7 +227,17 @@ def test_a_deadline_of_the_task_terminates_and_a_limit_of_rounds_truncates(
         ({"agents": "anne"}, "agents is 'anne'; give a list of texts"),
         ({"agents": ["anne", "anne"]}, r"agents is \['anne', 'anne'\]; name each agent once"),
         ({"max_steps": True}, "max_steps is True; give a whole number from 1 on"),
-        ({"seed": -1}, "seed is -1; environments take whole numbers from 0 on"),
+        ({"seed": -1}, r"seed is -1; environments take whole numbers from 0 to 2\*\*63 - 1"),
+        ({"seed": 2**63}, "seed is 9223372036854775808; environments take whole numbers from 0"),
+        ({"seed": True}, "seed is True; environments take whole numbers"),
+        ({"phrases": ["yes", "no", "yes"]}, r"phrases is \['yes', 'no', 'yes'\]; name each phrase"),
+        (
+            {"phrases": {"yes": 5}},
+            r"phrases\['yes'\] is 5; give a list of claims, each as bn.Claim",
+        ),
+        ({"phrases": {"yes": [5]}}, r"phrases\['yes'\] is \[5\]; give a list of claims"),
+        ({"phrases": {"yes": [{"heard": "no"}]}}, "cannot be claimed"),
+        ({"cells": [(0, -51, 0)]}, "cells are numbers of actions='flat' alone"),
         ({"agents": []}, "agents is empty; name agents that act"),
         ({"parameters": 3}, "parameters is 3; give values by name"),
     ],
@@ -238,6 +247,21 @@ def test_options_of_wrong_kinds_are_refused_in_one_line(options: Any, message: s
         parallel_env("sally-anne", **options)
     with pytest.raises(bn.InputError, match="None is no scenario; give a name, a file, or an"):
         parallel_env(None)  # type: ignore[arg-type]  # the wrong input itself
+    with pytest.raises(bn.InputError, match="actions is 'skills', which learners of stable-base"):
+        sb3_env("sally-anne", actions="skills")
+
+
+def test_what_is_said_can_be_given_as_facts_and_a_file_as_a_path(tmp_path: Path) -> None:
+    file = tmp_path / "room.yaml"
+    file.write_text(json.dumps(ROOM))
+    fact = {"container": [2, 1, 2], "items": {"diamond": 1}}
+    with closing(parallel_env(file, phrases={"It is there.": [fact]})) as env:
+        env.reset(seed=0)
+        env.step({"ann": env.action("say", phrase="It is there.")})
+        (said,) = env.nest.claims()
+        assert said.claim == bn.Claim.located("diamond", (2, 1, 2))
+        with pytest.warns(UserWarning, match="render shows nothing: make the environment with"):
+            assert env.render() is None
 
 
 def test_functions_of_the_user_return_numbers_and_truths() -> None:

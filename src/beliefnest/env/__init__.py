@@ -2,12 +2,12 @@
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from beliefnest.errors import InputError, MissingExtraError
 
 if TYPE_CHECKING:  # Imported when an environment is made.
-    from beliefnest.env.bounds import Phrases
     from beliefnest.env.environment import BeliefEnv
     from beliefnest.env.learners import LearnerEnv
     from beliefnest.env.options import EnvironmentOptions
@@ -15,6 +15,7 @@ if TYPE_CHECKING:  # Imported when an environment is made.
     from beliefnest.env.turns import TurnsEnv
     from beliefnest.env.vector import BeliefVectorEnv
     from beliefnest.episodes.task import Task
+    from beliefnest.facts.reading import ClaimLike
     from beliefnest.nest.face.nest import Nest
     from beliefnest.scenarios.scenario import Scenario
     from beliefnest.timeline.run_records import Senses
@@ -24,7 +25,7 @@ __all__ = ["aec_env", "parallel_env", "sb3_env", "vector_env"]
 
 
 def parallel_env(
-    scenario: "str | Scenario | Task",
+    scenario: "str | Path | Scenario | Task",
     *,
     parameters: "Mapping[str, Any] | None" = None,
     condition: int | None = None,
@@ -33,7 +34,7 @@ def parallel_env(
     observations: Literal["arrays", "dict"] = "arrays",
     agents: Sequence[str] | None = None,
     nested: int | Sequence[str] = (),
-    phrases: "Phrases | Sequence[str]" = (),
+    phrases: "Mapping[str, Sequence[ClaimLike]] | Sequence[str]" = (),
     items: Sequence[str] = (),
     cells: "Sequence[Position]" = (),
     sizes: "Mapping[str, int] | None" = None,
@@ -66,8 +67,10 @@ def parallel_env(
         observations: `arrays` of a fixed layout, or a `dict` of plain data.
         agents: Agents that act; None for all, in tasks for the players.
         nested: Beliefs about beliefs that observations hold too, as do infos under `beliefs`:
-            paths such as `/anne/sally`, or a number for all paths up to this depth.
-        phrases: Utterances to choose from; a mapping gives the claims of each.
+            paths such as `/anne/sally`, or a number for all paths up to this depth (2 for beliefs
+            about others' beliefs; 1 is the observation itself, and adds nothing).
+        phrases: Utterances to choose from; a mapping gives the claims of each, as `Claim` or as
+            facts.
         items: Names of items that may appear later but that no agent or container has at the
             start.
         cells: Cells that `flat` actions can be about: to go and stand there, to break or place a
@@ -130,7 +133,7 @@ def parallel_env(
     return made(source, options)
 
 
-def aec_env(scenario: "str | Scenario | Task", **options: Any) -> "TurnsEnv":
+def aec_env(scenario: "str | Path | Scenario | Task", **options: Any) -> "TurnsEnv":
     """Return a scenario or a task as a PettingZoo environment in which agents act in turn.
 
     The world moves when all agents have chosen. `unwrapped` is the parallel environment.
@@ -146,7 +149,7 @@ def aec_env(scenario: "str | Scenario | Task", **options: Any) -> "TurnsEnv":
 
 
 def vector_env(
-    scenario: "str | Scenario | Task", copies: int, *, processes: int = 1, **options: Any
+    scenario: "str | Path | Scenario | Task", copies: int, *, processes: int = 1, **options: Any
 ) -> "BeliefVectorEnv":
     """Return copies of an environment as a vector environment of Gymnasium.
 
@@ -166,7 +169,7 @@ def vector_env(
 
 
 def sb3_env(
-    scenario: "str | Scenario | Task", copies: int = 1, *, processes: int = 1, **options: Any
+    scenario: "str | Path | Scenario | Task", copies: int = 1, *, processes: int = 1, **options: Any
 ) -> "LearnerEnv":
     """Return copies of an environment for stable-baselines3: `PPO`, or `MaskablePPO` with masks.
 
@@ -174,13 +177,18 @@ def sb3_env(
         scenario: As for `parallel_env`.
         copies: Number of copies; each agent of a copy is one environment of the vector.
         processes: Number of processes that step the copies.
-        options: Arguments of `parallel_env`; `actions` is `flat` if it is left out.
+        options: Arguments of `parallel_env`; `actions` is `flat`.
 
     Raises:
         MissingExtraError: stable-baselines3 is not installed.
-        InputError: As for `vector_env`.
+        InputError: As for `vector_env`, or `actions` is not `flat`.
     """
     flat = {"actions": "flat", **options}
+    if flat["actions"] != "flat":
+        raise InputError(
+            f"actions is {flat['actions']!r}, which learners of stable-baselines3 cannot choose; "
+            "leave it out: it is 'flat'"
+        )
     env = vector_env(scenario, copies, processes=processes, **flat)
     try:
         from beliefnest.env.learners import LearnerEnv
@@ -205,7 +213,7 @@ def _classes() -> "tuple[type[BeliefEnv], type[EnvironmentOptions], type[BeliefV
 
 
 def _loaded(
-    scenario: "str | Scenario | Task",
+    scenario: "str | Path | Scenario | Task",
     condition: int | None,
     parameters: "Mapping[str, Any]",
     rounds: int | None,
@@ -217,6 +225,7 @@ def _loaded(
     from beliefnest.scenarios.rules import GoalEntry
     from beliefnest.scenarios.scenario import Scenario
 
+    scenario = str(scenario) if isinstance(scenario, Path) else scenario
     if not isinstance(scenario, str | Scenario | Task):
         raise InputError(f"{scenario!r:.100} is no scenario; give a name, a file, or an object")
     if not isinstance(parameters, Mapping):

@@ -3,6 +3,7 @@
 import hashlib
 import math
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
@@ -590,6 +591,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             return picture(self.nest, self._render_path)
         if self.render_mode == "human":
             sys.stdout.write(f"{line(self.nest, self._render_path)}\n")
+        if self.render_mode is None:
+            modes = " or ".join(map(repr, RENDER_MODES))
+            warnings.warn(
+                f"render shows nothing: make the environment with render_mode={modes}", stacklevel=2
+            )
         return None
 
     def state(self) -> Any:

@@ -7,8 +7,10 @@ import msgspec
 
 from beliefnest.env.bounds import Phrases
 from beliefnest.errors import InputError, PathError
+from beliefnest.facts.reading import ClaimLike, as_claims
 from beliefnest.nest.face.nest import Nest
 from beliefnest.timeline.run_records import Senses
+from beliefnest.world.claims import Claim
 from beliefnest.world.paths import parse_path, path_text, paths_below
 from beliefnest.world.seeds import checked_seed
 from beliefnest.world.texts import fault_of
@@ -26,7 +28,7 @@ class EnvironmentOptions(msgspec.Struct, frozen=True):
     observations: Literal["arrays", "dict"] = "arrays"
     agents: tuple[str, ...] | None = None
     nested: int | tuple[str, ...] = ()
-    phrases: Phrases | Sequence[str] = ()
+    phrases: Mapping[str, Sequence[ClaimLike]] | Sequence[str] = ()
     items: tuple[str, ...] = ()
     cells: tuple[Position, ...] = ()
     sizes: Mapping[str, int] = msgspec.field(default_factory=dict)
@@ -54,13 +56,13 @@ class EnvironmentOptions(msgspec.Struct, frozen=True):
                 f"render_mode is {self.render_mode!r}; it is {' or '.join(RENDER_MODES)}, or None"
             )
         env_seed(self.seed)
+        if self.cells and self.actions != "flat":
+            raise InputError("cells are numbers of actions='flat' alone; other actions name places")
         if isinstance(self.nested, int) and (isinstance(self.nested, bool) or self.nested < 0):
             raise InputError(f"nested is {self.nested!r}; give paths, or a depth from 0 on")
-        texts("phrases", list(self.phrases) if isinstance(self.phrases, Mapping) else self.phrases)
+        self._check_phrases()
         if self.agents is not None and len(set(self.agents)) < len(self.agents):
             raise InputError(f"agents is {list(self.agents)}; name each agent once")
-        if faults := list(filter(None, map(fault_of, self.phrases))):
-            raise InputError(f"phrases has {faults[0]}")
         counts = ("max_steps", "step_ticks", "timeout_ticks")
         for name in counts:
             number = getattr(self, name)
@@ -69,6 +71,21 @@ class EnvironmentOptions(msgspec.Struct, frozen=True):
         for name, function in (("reward", self.reward), ("ends", self.ends)):
             if function is not None and not callable(function):
                 raise InputError(f"{name} is {function!r}; give a function, or None")
+
+    def _check_phrases(self) -> None:
+        is_mapping = isinstance(self.phrases, Mapping)
+        phrases = texts("phrases", list(self.phrases) if is_mapping else self.phrases)
+        if len(set(phrases)) < len(phrases):
+            raise InputError(f"phrases is {list(phrases)!r:.100}; name each phrase once")
+        if faults := list(filter(None, map(fault_of, phrases))):
+            raise InputError(f"phrases has {faults[0]}")
+        for phrase, claims in self.said.items():
+            is_list = isinstance(claims, list | tuple)
+            if not is_list or not all(isinstance(each, Claim) for each in claims):
+                raise InputError(
+                    f"phrases[{phrase!r}] is {claims!r:.100}; give a list of claims, each as "
+                    "bn.Claim or as a fact"
+                )
 
     def check_scenario(self) -> None:
         """Check options that only tasks can have.
@@ -97,9 +114,9 @@ class EnvironmentOptions(msgspec.Struct, frozen=True):
     @property
     def said(self) -> Phrases:
         """Utterances with their claims."""
-        if isinstance(self.phrases, Mapping):
-            return self.phrases
-        return dict.fromkeys(self.phrases, ())
+        if not isinstance(self.phrases, Mapping):
+            return dict.fromkeys(self.phrases, ())
+        return {phrase: as_claims(claims) for phrase, claims in self.phrases.items()}
 
 
 def texts(name: str, values: object) -> tuple[str, ...]:
@@ -112,9 +129,14 @@ def texts(name: str, values: object) -> tuple[str, ...]:
 
 def env_seed(seed: object) -> int:
     """Return a seed as Gymnasium has them; raise InputError for others."""
-    number = checked_seed(seed)
+    try:
+        number = -1 if isinstance(seed, bool) else checked_seed(seed)
+    except InputError:
+        number = -1
     if number < 0:
-        raise InputError(f"seed is {number}; environments take whole numbers from 0 on")
+        raise InputError(
+            f"seed is {seed!r:.50}; environments take whole numbers from 0 to 2**63 - 1"
+        )
     return number
 
 

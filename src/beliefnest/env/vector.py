@@ -13,10 +13,10 @@ from gymnasium.vector import AsyncVectorEnv, AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, concatenate, create_empty_array, iterate
 
 from beliefnest.env.environment import BeliefEnv
+from beliefnest.env.options import env_seed
 from beliefnest.env.saving import check_no_options
 from beliefnest.env.spaces import BeliefSpace
 from beliefnest.errors import BeliefNestError, InputError, WorkerError
-from beliefnest.world.seeds import checked_seed
 from beliefnest.world.words import counted
 
 _Flags = npt.NDArray[np.bool_]
@@ -319,8 +319,8 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         if isinstance(seed, Sequence):
             if len(seed) != len(self._seeds):
                 raise InputError(f"there are {len(seed)} seeds for {len(self._seeds)} copies")
-            return [checked_seed(each) for each in seed]
-        return [checked_seed(seed) + number for number in range(len(self._seeds))]
+            return [env_seed(each) for each in seed]
+        return [env_seed(seed) + number for number in range(len(self._seeds))]
 
 
 def _workers(make: Callable[[], BeliefEnv], copies: int, processes: int) -> AsyncVectorEnv:
