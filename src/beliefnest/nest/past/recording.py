@@ -65,7 +65,7 @@ class Recording(Barred):
         world: Name of the world in which the nest was opened.
         remembered: Caches of readers, by keys of their own.
         sums: Sums of an imagined history, by path of its simulator.
-        told: Path and moment for which observations and names were read last, and these.
+        told: Observations and names that were read last, by path, moment and generation.
     """
 
     _called = "the nest"
@@ -82,7 +82,7 @@ class Recording(Barred):
         self.world = world
         self.remembered: dict[object, object] = {}
         self.sums: Mapping[BeliefPath, StateSums] = {}
-        self.told: tuple[tuple[BeliefPath, ForkPoint], ToldMind] | None = None
+        self.told: dict[tuple[BeliefPath, ForkPoint, int], ToldMind] = {}
         self.journal = journal
         self.seed = seed
         self.renderer = Renderer() if renderer is None else renderer

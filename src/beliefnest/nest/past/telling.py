@@ -9,6 +9,8 @@ from beliefnest.prompts.mind_view import MindView, ToldMind
 from beliefnest.prompts.naming import believed_names, known_places
 from beliefnest.world.paths import BeliefPath, normalised
 
+_KEPT = 8
+
 
 def mind_view(recording: Recording, path: BeliefPath, tick: int | None) -> MindView:
     """Return the view of a simulator, now or at a past tick.
@@ -28,12 +30,15 @@ def mind_view(recording: Recording, path: BeliefPath, tick: int | None) -> MindV
 
 
 def _told(recording: Recording, path: BeliefPath, tick: int | None) -> ToldMind:
-    """Return what a simulator's owner is told; the latest is kept, as it is asked for again."""
-    of = (path, recording.moment(path, tick))
+    """Return what a simulator's owner is told; the latest few are kept, for the next questions."""
     kept = recording.told
-    if kept is None or kept[0] != of:
-        kept = recording.told = of, _read(recording, path, tick)
-    return kept[1]
+    of = path, recording.moment(path, tick), recording.history.generation
+    if of not in kept:
+        told = _read(recording, path, tick)
+        if len(kept) == _KEPT:
+            del kept[next(iter(kept))]
+        kept[of] = told
+    return kept[of]
 
 
 def _read(recording: Recording, path: BeliefPath, tick: int | None) -> ToldMind:
