@@ -75,8 +75,6 @@ def test_a_folder_without_locks_of_files_is_held_all_the_same(tmp_path, kind):
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path):
-    with (
-        pytest.raises(InputError, match="missing cannot be written"),
-        holding(tmp_path / "missing"),
-    ):
+    (tmp_path / "taken" / ".in-use").mkdir(parents=True)
+    with pytest.raises(InputError, match="taken cannot be written"), holding(tmp_path / "taken"):
         pass

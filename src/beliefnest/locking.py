@@ -18,6 +18,7 @@ import msgspec
 from filelock import SoftFileLock, Timeout, lock_descriptor
 
 from beliefnest.errors import InputError
+from beliefnest.files import make_folder
 from beliefnest.owned import Owned
 
 _FOLDER_LOCK = ".in-use"
@@ -124,12 +125,13 @@ def holding(folder: Path, otherwise: str = "name another folder with --out") -> 
     """Hold a folder of results while its content is written; no other process may write there.
 
     Args:
-        folder: The folder; it must exist.
+        folder: The folder; made if it does not exist.
         otherwise: Advice for the user if the folder is in use, besides waiting.
 
     Raises:
-        InputError: Another process writes to the folder, or it is not writable.
+        InputError: The folder cannot be made, another process writes to it, or it is not writable.
     """
+    make_folder(folder)
     try:
         lock = ProcessLock.acquire(folder / _FOLDER_LOCK)
     except LockHeldError as held:

@@ -12,7 +12,7 @@ import msgspec
 
 from beliefnest.cli.report import report_json
 from beliefnest.errors import InputError
-from beliefnest.files import make_folder, read_regular_text, replace_file
+from beliefnest.files import make_folder, os_errors_of, read_regular_text, replace_file
 from beliefnest.locking import holding, is_lock
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.plan.cells import Keyed
@@ -100,14 +100,7 @@ class RunFolder(msgspec.Struct, frozen=True):
         Raises:
             InputError: The folder cannot be made, or is in use.
         """
-        try:
-            if wanted is None:
-                path = _made(Path("runs"), f"{name}-{now:%Y%m%d-%H%M%S}")
-            else:
-                path = wanted
-                make_folder(path)
-        except OSError as error:
-            raise _unwritable(wanted or Path("runs"), error) from None
+        path = wanted or _made(Path("runs"), f"{name}-{now:%Y%m%d-%H%M%S}")
         with holding(path):
             yield RunFolder(path)
 
@@ -125,7 +118,7 @@ class RunFolder(msgspec.Struct, frozen=True):
         Raises:
             InputError: The folder cannot be written, or holds something else.
         """
-        try:
+        with os_errors_of(f"the run folder {self.path}", "written"):
             # A run that repeats another one may begin with a folder of cached answers alone.
             if any(each.name != _ANSWERS and not is_lock(each) for each in self.path.iterdir()):
                 _check_same(self.path, settings, scenario)
@@ -137,8 +130,6 @@ class RunFolder(msgspec.Struct, frozen=True):
             replace_file(self.path / _SCENARIO, scenario.text)
             if scenario.templates:
                 replace_file(templates_file(self.path / _SCENARIO), _json(scenario.templates))
-        except OSError as error:
-            raise _unwritable(self.path, error) from None
 
     def write_plan(
         self,
@@ -262,15 +253,12 @@ def kept_scenario_file(out: Path | None, wanted: str) -> Path | None:
 def _made(parent: Path, name: str) -> Path:
     """Make and return a new folder; another run may have begun in the same second."""
     make_folder(parent)
-    for each in chain([name], (f"{name}-{number}" for number in count(2))):
-        with suppress(FileExistsError):
-            (parent / each).mkdir()
-            break
+    with os_errors_of(f"the run folder {parent}", "written"):
+        for each in chain([name], (f"{name}-{number}" for number in count(2))):
+            with suppress(FileExistsError):
+                (parent / each).mkdir()
+                break
     return parent / each
-
-
-def _unwritable(path: Path, error: OSError) -> InputError:
-    return InputError(f"the run folder {path} cannot be written: {error.strerror}")
 
 
 def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) -> None:

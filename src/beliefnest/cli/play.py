@@ -9,9 +9,9 @@ from typing import Any
 
 from rich.text import Text
 
-from beliefnest.cli.console import Printed, print_report, progress_on, result_table, stdout
+from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import PlayOptions, joining_address
-from beliefnest.cli.terminal_text import printable
+from beliefnest.cli.terminal_text import printable, say
 from beliefnest.episodes.considered import considered_lines
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.helping import Help
@@ -20,7 +20,7 @@ from beliefnest.episodes.record import Budget
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, ModelError, NotBegunError
-from beliefnest.files import make_folder, new_file
+from beliefnest.files import new_file
 from beliefnest.llm.model_settings import query_of
 from beliefnest.locking import holding
 from beliefnest.scenarios.judging import unanswered_words
@@ -57,7 +57,7 @@ def play_task(options: PlayOptions) -> int:
     if options.export is not None:
         return _export(task, options.export)
     with (
-        nullcontext() if options.out is None else holding(_made(options.out)),
+        nullcontext() if options.out is None else holding(options.out),
         _episode(task, policies, options) as episode,
         progress_on(task.name) as on_progress,
     ):
@@ -81,9 +81,7 @@ def _export(task: Task, file: Path) -> int:
     """Write a task as a scenario file, which must be new."""
     with new_file(file) as out:
         out.write(task.text().encode())
-    stdout().print(
-        f"wrote {file}; play it with `beliefnest play {file}`", markup=False, soft_wrap=True
-    )
+    say(f"wrote {file}; play it with `beliefnest play {file}`\n")
     return 0
 
 
@@ -129,12 +127,6 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
                 "continue it, or name another folder"
             )
     return kept
-
-
-def _made(folder: Path) -> Path:
-    """Make a folder, unless it is there, and return it."""
-    make_folder(folder)
-    return folder
 
 
 def _pairs(texts: Sequence[str], option: str, form: str) -> dict[str, str]:

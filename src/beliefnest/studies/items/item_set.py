@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import decode_json, make_folder, read_regular, replace_file
+from beliefnest.files import decode_json, read_regular, replace_file
 from beliefnest.locking import holding
 from beliefnest.plan.cells import digest
 from beliefnest.studies.items.exports import card, croissant, tasks
@@ -209,7 +209,6 @@ class ItemSet:
                     f"{place} holds version {self.version} with other items ({line}); give a new "
                     "--set-version and say its --changes, or name another folder"
                 )
-        make_folder(place)
         with holding(place):
             for name, content in files.items():
                 (place / name).parent.mkdir(exist_ok=True)

@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from beliefnest.errors import InputError
-from beliefnest.files import make_folder, os_errors_of, replace_file
+from beliefnest.files import os_errors_of, replace_file
 from beliefnest.locking import holding
 from beliefnest.plan.cells import digest, variation_id
 from beliefnest.studies.participants.film import SceneFilm
@@ -148,9 +148,10 @@ def page_files(
 
 def write_folder(folder: Path, contents: Mapping[str, str]) -> None:
     """Write the files; raise InputError if they cannot be written."""
-    make_folder(folder)
-    place = f"the folder {folder}"
-    with os_errors_of(place, "written"), holding(folder, "name another folder with -o"):
+    with (
+        os_errors_of(f"the folder {folder}", "written"),
+        holding(folder, "name another folder with -o"),
+    ):
         for name, text in contents.items():
             replace_file(folder / name, text)
 

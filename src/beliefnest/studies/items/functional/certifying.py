@@ -16,7 +16,6 @@ from msgspec.structs import asdict
 from beliefnest.episodes.shortcuts import CHANCE, rules_of, trained_rule
 from beliefnest.episodes.task import Task
 from beliefnest.errors import ModelError
-from beliefnest.files import make_folder
 from beliefnest.llm.budget import RunLimits
 from beliefnest.locking import holding
 from beliefnest.plan.cells import digest
@@ -164,7 +163,6 @@ def _played(
     Raises:
         ModelError: A cell has no result.
     """
-    make_folder(folder)
     place = GroupFolder(folder)
     terms = Terms(folder / "answers", place.ledger, None, RunLimits())
     with holding(folder):
