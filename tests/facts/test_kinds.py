@@ -38,6 +38,10 @@ def test_a_fact_with_keys_that_do_not_fit_is_refused() -> None:
             "give container and items or container and lacks; a condition leaves out what the file "
             "gives by `items: null` or `lacks: null`",
         ),
+        (
+            {"container": CHEST, "items": {"apple": 1}, "within": 3},
+            "give container and items, without within$",
+        ),
         ({"block": DOOR}, "makes no sense; give block and state.* or block and like$"),
         ({"agent": "ann", "at": [1, 1, 1], "withn": 2}, "'withn'; did you mean 'within'"),
         ({"container": CHEST, "itmes": {"apple": 1}}, "'itmes'; did you mean 'items'"),

@@ -250,9 +250,12 @@ def fact_in(entry: FactEntry) -> Fact:
         whole = [kind for kind in KINDS if {*kind.keys} <= values.keys()]
         near = whole or [kind for kind in KINDS if {*kind.keys} & values.keys()] or KINDS
         forms = listed(list(dict.fromkeys(" and ".join(kind.keys) for kind in near)), "or")
-        extra = {key for kind in whole for key in values.keys() - {*kind.keys, *kind.more}}
-        nulls = listed([f"`{key}: null`" for key in sorted(extra) if usual[key] is None], "or")
-        hint = nulls and f"; a condition leaves out what the file gives by {nulls}"
+        extras = [values.keys() - {*kind.keys, *kind.more} for kind in whole]
+        strange = sorted(set.intersection(*extras)) if extras else []
+        extra = sorted(set().union(*extras))
+        nulls = listed([f"`{key}: null`" for key in extra if usual[key] is None], "or")
+        hint = f", without {listed(strange)}" if strange else ""
+        hint += nulls and f"; a condition leaves out what the file gives by {nulls}"
         raise InputError(f"the fact {values} makes no sense; give {forms}{hint}")
     return facts[0]
 
