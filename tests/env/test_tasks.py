@@ -220,11 +220,12 @@ def test_given_values_are_warned_of_if_unlisted_and_refused_at_once_if_impossibl
 
 
 class Fetches:
-    """Policy that takes the diamond in its second round."""
+    """Policy that takes the diamond in its second round; in the first it gives no program."""
 
-    def act(self, view: bn.AgentView) -> str:
+    def act(self, view: bn.AgentView) -> str | None:
         take = f"await getItemFromChest(bot, new Vec3({CHEST[0]}, 1, 2), {{diamond: 1}})"
-        return take if view.round and view.agent == "ann" else ""
+        idle = "" if view.round else None
+        return take if view.round and view.agent == "ann" else idle
 
 
 def test_a_policy_of_play_acts_in_the_environment_as_it_does_there() -> None:

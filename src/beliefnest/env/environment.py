@@ -627,9 +627,9 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if isinstance(action, Call):
             return action
         if self._options.actions == "programs":
-            if not isinstance(action, str):
+            if not isinstance(action, str | None):
                 raise InputError(f"a program is a text, not {type(action).__name__}")
-            return action
+            return action or ""
         if isinstance(action, NamedAction):
             return action.call
         if self._options.actions == "flat":

@@ -376,10 +376,10 @@ class RoundFacts(msgspec.Struct, frozen=True):
 class Policy(Protocol):
     """Protocol of policies, which decide what an agent does."""
 
-    def act(self, view: AgentView) -> str:
+    def act(self, view: AgentView) -> str | None:
         """Return the agent's program for the round.
 
-        An empty text means that the agent does nothing; `GO_ON` continues its last program.
+        An empty text or None means that the agent does nothing; `GO_ON` continues its last program.
 
         Args:
             view: Knowledge of the agent.
