@@ -62,6 +62,33 @@ def test_who_says_too_much_has_failed() -> None:
     with bn.Episode(task(goal=goal, rounds=6), {"ann": Says(), "bob": Says()}) as played:
         played.play()
         assert (played.success, played.rounds, played.messages) == (False, 2, 4)
+        assert played.why_not == "more than 3 messages"
+
+
+def test_what_was_missed_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    reach = [{"agent": "ann", "items": {"apple": 1}}]
+    takes = "await bot.waitForTicks(5)\n"
+    takes += "await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})"
+    policies = {"ann": Scripted([takes]), "bob": Scripted([""])}
+    with bn.Episode(task(goal={"reach": reach}), policies) as played:
+        assert played.play().success
+        assert played.why_not == ""
+        took = played.ticks
+    goal: dict[str, Any] = {"reach": reach, "ticks": took - 1}
+    with bn.Episode(task(goal=goal), policies) as played:
+        assert played.play().conditions == [("ann has 1 apple", played.start + took)]
+        assert played.why_not == f"not within {took - 1} ticks; too late: ann has 1 apple"
+        assert played.progress["ann"].violated == played.start + took - 1
+    (tmp_path / "nothing.txt").write_text("")
+    (tmp_path / "hall.json").write_text(json.dumps({**HALL, "episode": {"goal": goal}}))
+    idle = [f"{name}=scripted:{tmp_path / 'nothing.txt'}" for name in ("ann", "bob")]
+    given = ["play", str(tmp_path / "hall.json"), "--agent", idle[0], "--agent", idle[1]]
+    assert run_command_line(given) == 1
+    told = f"\nwhy not: not within {took - 1} ticks; not reached: ann has 1 apple\n"
+    assert told in capsys.readouterr().out
+    never = {"reach": reach, "never": [{"agent": "bob", "at": [8, 1, 3]}]}
+    with bn.Episode(task(goal=never), policies) as played:
+        assert played.why_not == "not to be: bob within 1 of (8, 1, 3)"
 
 
 def test_each_condition_of_an_entry_is_told_as_one_to_reach() -> None:

@@ -161,6 +161,7 @@ def _report(episode: Episode, options: PlayOptions) -> dict[str, Any]:
         "task": episode.task.name,
         "world": episode.world,
         "success": episode.success,
+        "why_not": episode.why_not,
         "start": episode_report["start"],
         "goal": [
             {"condition": text, "never": never, "tick": tick}
@@ -222,6 +223,8 @@ def _parts(report: Mapping[str, Any]) -> Iterator[Printed]:
     yield from map(_goal_line, report["goal"])
     if "help" in report:
         yield from _help_lines(report["help"], report["measures"])
+    if report["why_not"]:
+        yield f"why not: {report['why_not']}"
     measures = report["measures"]
     verdict = "reached" if report["success"] else "not reached"
     # Conditions have ticks of the world; the ticks of the goal count from the first round.

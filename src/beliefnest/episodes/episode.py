@@ -279,6 +279,12 @@ class Episode:
         return self._nest is not None and self._watch().succeeded(over=self.is_over)
 
     @property
+    def why_not(self) -> str:
+        """Conditions and limits for which the goal is not reached, in words; empty: it is."""
+        self._opened()
+        return "" if self.success else self._watch().why_not()
+
+    @property
     def messages(self) -> int:
         """Number of utterances of players since the first round began."""
         return self.measures.messages

@@ -8,6 +8,7 @@ import msgspec
 from beliefnest.facts.kinds import StatedFact
 from beliefnest.facts.states import Look
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.words import counted
 
 
 class Goal(msgspec.Struct, frozen=True):
@@ -75,7 +76,8 @@ class Progress:
         start: Tick at which the first round begins.
         first: Tick at which each condition first came true, by number of the condition.
         reached: Tick at which the goal was reached; None: not yet.
-        violated: Tick at which the goal was violated; None: it was not.
+        violated: Tick at which the goal was violated, such as the last one of its limit of ticks;
+            None: it was not.
         messages: Number of utterances of players so far; not counted if the goal does not limit it.
     """
 
@@ -104,15 +106,12 @@ class Progress:
         for number, holds in enumerate(are_met):
             if holds:
                 self.first.setdefault(number, tick)
+        self.end_tick(tick - 1)
         if self.violated is not None:
             return
         self.messages += messages
         count = len(self.goal.reach)
-        if (
-            any(are_met[count:])
-            or (self.goal.messages is not None and self.messages > self.goal.messages)
-            or (self.goal.ticks is not None and tick - self.start > self.goal.ticks)
-        ):
+        if any(are_met[count:]) or self._says_too_much:
             self.violated = tick
         elif count and all(are_met[:count]):
             self.reached = tick
@@ -121,7 +120,32 @@ class Progress:
         """Note that nothing more happens in a tick: with the last one, a limit of ticks is over."""
         is_open = self.reached is None and self.violated is None
         if is_open and self.goal.ticks is not None and tick - self.start >= self.goal.ticks:
-            self.violated = tick
+            self.violated = self.start + self.goal.ticks
+
+    @property
+    def _says_too_much(self) -> bool:
+        return self.goal.messages is not None and self.messages > self.goal.messages
+
+    def why_not(self) -> str:
+        """Return in words what the goal lacks, if it is not reached."""
+        goal, texts = self.goal, list(map(str, self.goal.conditions))
+        count, end = len(goal.reach), self.violated
+        # Conditions come true after a violation, too.
+        met = {number for number, tick in self.first.items() if end is None or tick <= end}
+        broken = [f"not to be: {texts[number]}" for number in sorted(met) if number >= count]
+        if self._says_too_much:
+            broken.append(f"more than {counted(goal.messages or 0, 'message')}")
+        if broken:
+            return "; ".join(broken)
+        if not goal.reach:
+            return "the rounds are not over"
+        late = [] if end is None else [f"not within {counted(goal.ticks or 0, 'tick')}"]
+        lacking = [
+            f"{'too late' if number in self.first else 'not reached'}: {texts[number]}"
+            for number in range(count)
+            if number not in met
+        ]
+        return "; ".join([*late, *(lacking or ["never all of it at one and the same tick"])])
 
     def succeeded(self, *, over: bool) -> bool:
         """Return True if the goal is reached; `over` is True if the episode has ended."""

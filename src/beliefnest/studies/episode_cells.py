@@ -143,7 +143,7 @@ class EpisodeCell(msgspec.Struct, frozen=True):
                 "error": None,
                 "run": "" if store is None else f"runs/{store.name}",
                 "goal": [list(each) for each in episode.conditions],
-                "why_not": "" if episode.success else _why_not(episode),
+                "why_not": episode.why_not,
                 "measures": episode.measures.row(),
             }
 
@@ -151,17 +151,6 @@ class EpisodeCell(msgspec.Struct, frozen=True):
 def _raise_first(episode: Episode) -> None:
     for error in episode.model_errors:
         raise error
-
-
-def _why_not(episode: Episode) -> str:
-    """Return the unmet conditions of the goal, in words."""
-    goal, conditions = episode.task.goal, episode.conditions
-    count = len(goal.reach)
-    broken = [f"not to be: {text}" for text, tick in conditions[count:] if tick is not None]
-    if goal.messages is not None and episode.messages > goal.messages:
-        broken.append(f"{episode.messages} messages; at most {goal.messages}")
-    lacking = [f"not reached: {text}" for text, tick in conditions[:count] if tick is None]
-    return "; ".join(broken or lacking) or "never all of it at one and the same tick"
 
 
 def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
