@@ -48,6 +48,9 @@ def test_any_branch_is_gone_on_with_and_replayed(tmp_path: Path) -> None:
     with bn.Episode(TASK, {"anne": Scripted([])}, store=tmp_path / "e.bn") as episode:
         assert not episode.play().success
         assert episode.at(0).fork(anne="search:1").play(2).branch == "fork 1"
+        assert episode.measures.rounds == 17  # reading another branch plays nothing
+    with bn.Episode.resume(tmp_path / "e.bn") as episode:
+        assert episode.branch == "fork 1"
     with bn.Episode.resume(tmp_path / "e.bn", branch="fork 1") as episode:
         assert (episode.rounds, episode.play().success) == (2, True)
     for branch, success in (("main", False), ("fork 1", True)):

@@ -35,6 +35,7 @@ from beliefnest.episodes.record import (
     keep_branch,
     keep_start,
     kept_in,
+    played_last,
 )
 from beliefnest.episodes.round_start import RoundStart
 from beliefnest.episodes.rounds import Asker, replayed, slots_of
@@ -144,7 +145,7 @@ class Episode:
         nest = Nest.resume(store)
         try:
             kept, branches = kept_in(nest)
-            branch = branch or nest["/"].branch
+            branch = branch or played_last(nest) or nest["/"].branch
             recorded = branch_of(branches, branch)
             nest["/"].switch(branch)
             chosen = {**recorded.policies, **(policies or {})}
@@ -183,7 +184,7 @@ class Episode:
         nest = Nest.read(recorded)
         with nest:
             kept, branches = kept_in(nest)
-            decided = branch_of(branches, branch or nest.branch("/"))
+            decided = branch_of(branches, branch or played_last(nest) or nest.branch("/"))
         check_repeats(kept.world, "replayed")
         policies = replayed(decided.parts, decided.policies)
         task = Task.from_mapping(kept.task, kept.task_seed)

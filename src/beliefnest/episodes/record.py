@@ -11,6 +11,7 @@ from beliefnest.world.texts import quoted
 from beliefnest.worlds.protocol import NO_WAY, Fault, ProgramPast, ProgramResult
 
 _BEGINS, _START, _BRANCHES = "episode begins", "episode", "episode branches"
+_LAST = "episode branch played last"
 
 
 class Keeps(Protocol):
@@ -115,6 +116,14 @@ def keep_branch(nest: Writes, name: str, branch: Branch) -> None:
     branches: dict[str, Any] = msgspec.json.decode(kept or b"{}", type=dict[str, msgspec.Raw])
     branches[name] = branch
     nest.keep(_BRANCHES, msgspec.json.encode(branches))
+    if len(branches) > 1 and nest.kept(_LAST) != name.encode():
+        nest.keep(_LAST, name.encode())
+
+
+def played_last(nest: Keeps) -> str | None:
+    """Return the branch that was played or begun last; None: there is only one."""
+    kept = nest.kept(_LAST)
+    return None if kept is None else kept.decode()
 
 
 def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
