@@ -52,6 +52,7 @@ def test_names_of_others_are_no_markup_and_command_no_terminal(tmp_path, capsys)
         ("--attempts", "0"),
         ("--attempts", str(10**9)),
         ("--seed", str(2**63)),
+        ("--seed", "-1"),
     ],
 )
 def test_numbers_that_cannot_be_are_refused_by_the_name_of_their_option(

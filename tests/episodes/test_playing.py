@@ -160,6 +160,7 @@ def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFix
     for wrong in (
         ["play"],
         ["play", "x"],
+        ["play", "help-find", "--seed", "-1"],
         ["play", "sally-anne"],
         ["play", "help-find", "--agent", "anne"],
         ["play", "help-find", "--agent", "anne=random", "--agent", "anne=search:1"],

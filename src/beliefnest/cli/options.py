@@ -127,7 +127,7 @@ class RunOptions(ModelOptions, frozen=True):
         Path | None, typer.Option(help="Run folder to write; an interrupted run continues in it.")
     ] = None
     seed: Annotated[
-        int, typer.Option(help="Seed of all random numbers; each further repeat adds 1.")
+        int, typer.Option(help="Seed of all random numbers; each further repeat adds 1.", min=0)
     ] = 0
     cache: Annotated[
         Cache, typer.Option(help="Cached answers: use and store them, only store them, or neither.")
@@ -315,7 +315,7 @@ class SuiteOptions(msgspec.Struct, frozen=True):
     world: Annotated[str, typer.Option(help="World in which the stories play.")] = "scripted"
     rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None
     limit: Annotated[int | None, typer.Option(help="Most stories or films to play.")] = None
-    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0
+    seed: Annotated[int, typer.Option(help="Seed of all random numbers.", min=0)] = 0
     claims_from: Annotated[
         str | None, typer.Option(help="Model that extracts claims from utterances.")
     ] = None
@@ -449,7 +449,7 @@ class SearchItemsOptions(msgspec.Struct, frozen=True):
     transfer: Annotated[
         str | None, typer.Option(metavar="MODEL", help="Second model, which is tested as well.")
     ] = None
-    seed: Annotated[int, typer.Option(help="Seed of all draws.")] = 0
+    seed: Annotated[int, typer.Option(help="Seed of all draws.", min=0)] = 0
     max_cost: Annotated[
         float | None,
         typer.Option(help="Cost limit in US dollars; default: that of the study.", min=0),
@@ -591,7 +591,7 @@ class PlayOptions(ModelOptions, frozen=True):
     condition: Annotated[int | None, typer.Option(help="Condition of the scenario.")] = None
     rounds: Annotated[int | None, typer.Option(help="Limit of rounds.", min=0)] = None
     seed: Annotated[
-        int, typer.Option(help="Instance of the task, and seed of all random numbers.")
+        int, typer.Option(help="Instance of the task, and seed of all random numbers.", min=0)
     ] = 0
     world: Annotated[str, typer.Option(help="World in which the episode plays.")] = "scripted"
     out: Annotated[
