@@ -543,10 +543,11 @@ class Episode:
     def _finish_part(self) -> None:
         """Play the last part to the end of its ticks, if that is not done yet."""
         nest, ticks = self.nest, self.task.form.round_ticks
+        mute = {*self.task.agents} - {*self.task.form.talk}
         if self._people:
             if self._parts and not self._parts[-1].ended:
                 self._parts[-1] = play_part_with_people(
-                    nest, self._parts, ticks, self._policies, lambda: self.is_decided
+                    nest, self._parts, ticks, self._policies, lambda: self.is_decided, mute
                 )
                 self._watch()
                 self._keep()
@@ -555,7 +556,7 @@ class Episode:
         if not self._parts or nest.tick >= end:
             return
         with nest.together():
-            self._parts[-1] = play_part(nest, self._parts, ticks, end)
+            self._parts[-1] = play_part(nest, self._parts, ticks, end, mute)
             self._watch()
             self._keep()
 

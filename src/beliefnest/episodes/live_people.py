@@ -79,6 +79,7 @@ class RealRound:
         ticks: Length of the round; it is longer if a person is awaited.
         decided: Function that returns True when the outcome of the episode is certain; the round
             then waits for nobody.
+        mute: Agents whose programs may not speak.
 
     Attributes:
         began: Tick at which the round began.
@@ -86,9 +87,14 @@ class RealRound:
     """
 
     def __init__(
-        self, nest: Nest, policies: Mapping[str, Policy], ticks: int, decided: Callable[[], bool]
+        self,
+        nest: Nest,
+        policies: Mapping[str, Policy],
+        ticks: int,
+        decided: Callable[[], bool],
+        mute: Collection[str],
     ) -> None:
-        self._nest, self._ticks, self._decided = nest, ticks, decided
+        self._nest, self._ticks, self._decided, self._mute = nest, ticks, decided, mute
         self._people = people_in(policies)
         self._awaited = frozenset(
             name for name, each in policies.items() if isinstance(each, Person) and each.is_awaited
@@ -104,7 +110,9 @@ class RealRound:
         nest = self._nest
         results: Mapping[str, ProgramResult] = {}
         if programs:
-            results = nest["/"].run_all(programs, self._ticks, senses="percepts", past=past)
+            results = nest["/"].run_all(
+                programs, self._ticks, senses="percepts", past=past, mute=self._mute
+            )
         self.cut = nest.tick
         most = self._ticks * (_LONGEST if self._awaited else 1)
         left = max(0, self.began + most - nest.tick)

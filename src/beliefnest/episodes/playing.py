@@ -1,6 +1,6 @@
 """Playing of one part of a round, in virtual time or together with people."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.decided import Ended, RoundPart
@@ -10,7 +10,9 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.worlds.protocol import ProgramPast, ProgramResult
 
 
-def play_part(nest: Nest, parts: Sequence[RoundPart], ticks: int, end: int) -> RoundPart:
+def play_part(
+    nest: Nest, parts: Sequence[RoundPart], ticks: int, end: int, mute: Collection[str]
+) -> RoundPart:
     """Run the decided programs of the last part in virtual time.
 
     Args:
@@ -18,6 +20,7 @@ def play_part(nest: Nest, parts: Sequence[RoundPart], ticks: int, end: int) -> R
         parts: All parts up to this one.
         ticks: Length of the part.
         end: Tick at which the part ends.
+        mute: Agents that may not speak.
 
     Returns:
         The part with its results.
@@ -25,7 +28,7 @@ def play_part(nest: Nest, parts: Sequence[RoundPart], ticks: int, end: int) -> R
     part, (programs, past) = parts[-1], _programs(parts)
     results: Mapping[str, ProgramResult] = {}
     if programs:
-        results = nest["/"].run_all(programs, ticks, senses="percepts", past=past)
+        results = nest["/"].run_all(programs, ticks, senses="percepts", past=past, mute=mute)
     if nest.tick < end:
         nest["/"].step(end - nest.tick)
     look_around(nest)
@@ -40,6 +43,7 @@ def play_part_with_people(
     ticks: int,
     policies: Mapping[str, Policy],
     decided: Callable[[], bool],
+    mute: Collection[str],
 ) -> RoundPart:
     """Run the decided programs of the last part in real time, while people act.
 
@@ -49,12 +53,13 @@ def play_part_with_people(
         ticks: Length of the part; it is longer if a person is awaited.
         policies: Policies by agent, including people.
         decided: Function that returns True when the outcome of the episode is certain.
+        mute: Agents whose programs may not speak.
 
     Returns:
         The part with its results and the tick at which it began.
     """
     part, (programs, past) = parts[-1], _programs(parts)
-    here = RealRound(nest, policies, ticks, decided)
+    here = RealRound(nest, policies, ticks, decided, mute)
     results = here.run(programs, past)
     acted = here.acted
     ended = {

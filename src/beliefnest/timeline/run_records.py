@@ -79,6 +79,7 @@ class ProgramRecord(msgspec.Struct, frozen=True):
         kept: True if its effects were recorded; False if the world's process died under it.
         senses: `world` or `percepts`: what it could read.
         past: Its calls before it was interrupted, if it was resumed; otherwise unset.
+        mute: True if the agent could not speak; otherwise unset.
     """
 
     path: BeliefPath
@@ -99,6 +100,7 @@ class ProgramRecord(msgspec.Struct, frozen=True):
     kept: bool = True
     senses: Senses = "world"
     past: bytes | msgspec.UnsetType = msgspec.UNSET
+    mute: bool | msgspec.UnsetType = msgspec.UNSET
 
 
 class PromptRecord(msgspec.Struct, frozen=True):

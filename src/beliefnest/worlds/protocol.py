@@ -237,11 +237,13 @@ class RunRules(msgspec.Struct, frozen=True):
         speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
         remembers: True if results contain the calls of programs, so that these can be resumed.
         past: Records of the programs that are resumed, by agent.
+        mute: Agents that cannot say or whisper anything.
     """
 
     speech_ticks: int = 0
     remembers: bool = False
     past: Mapping[str, ProgramPast] = msgspec.field(default_factory=dict)
+    mute: frozenset[str] = frozenset()
 
 
 AS_USUAL = RunRules()

@@ -8,7 +8,7 @@ ends during a call, the call is repeated in a new process. Programs are the exce
 """
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import wraps
 from typing import Concatenate, ParamSpec, Self, TypeVar
 
@@ -190,6 +190,7 @@ class Engine:
         step: int | None = None,
         senses: Senses = "world",
         past: Mapping[str, ProgramPast] | None = None,
+        mute: Collection[str] = (),
     ) -> Mapping[str, ProgramResult]:
         """Run programs in a body, record what happens, and note them with their results.
 
@@ -205,8 +206,11 @@ class Engine:
             senses: `world` or `percepts`: what programs can read.
             past: Pasts of agents whose programs continue interrupted ones. None: no program
                 continues another, and results contain no past for later programs.
+            mute: Agents that cannot speak.
         """
-        rules = self._rules if past is None else replace(self._rules, remembers=True, past=past)
+        rules = replace(self._rules, mute=frozenset(mute))
+        if past is not None:
+            rules = replace(rules, remembers=True, past=past)
         request = _Request(programs, timeout_ticks, step, senses, rules)
         lives = self.bodies.lives()
         while True:
@@ -350,5 +354,6 @@ class Engine:
                     kept=kept,
                     senses=request.senses,
                     past=msgspec.UNSET if past is None else msgspec.json.encode(past),
+                    mute=agent in request.rules.mute or msgspec.UNSET,
                 )
             )

@@ -46,6 +46,7 @@ class _RecordedCall(msgspec.Struct, frozen=True):
     senses: Senses
     ticks: int
     past: Mapping[str, ProgramPast]
+    mute: frozenset[str]
 
     def made(self, entry: Entry) -> bool:
         """Return True if an entry was recorded during the call."""
@@ -140,8 +141,9 @@ def _call(group: Sequence[ProgramRecord]) -> _RecordedCall:
         for program in group
         if program.past is not msgspec.UNSET
     }
+    mute = frozenset(program.agent for program in group if program.mute is True)
     return _RecordedCall(
-        first.tick, first.entries, programs, first.timeout_ticks, first.senses, ticks, past
+        first.tick, first.entries, programs, first.timeout_ticks, first.senses, ticks, past, mute
     )
 
 
@@ -185,8 +187,8 @@ def _run_again(
         for tick, number, act in sorted(acts, key=lambda each: each[:2]):
             recorded.wait_until(body, tick)
             if isinstance(act, _RecordedCall):
-                going_on = replace(rules, remembers=bool(act.past), past=act.past)
-                body.run(act.programs, act.timeout_ticks, recorded.senses(act, body), going_on)
+                its = replace(rules, remembers=bool(act.past), past=act.past, mute=act.mute)
+                body.run(act.programs, act.timeout_ticks, recorded.senses(act, body), its)
                 continue
             if isinstance(act, Frame) or act.path == info.key.path:
                 body.set_state(recorded.after(number + 1, act.tick, world))

@@ -1,7 +1,7 @@
 """Live simulator of a nest, as users work with it."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
 from beliefnest.belief.arrays import UNKNOWN
@@ -176,6 +176,7 @@ class Simulator(ShownSimulator):
         timeout_ticks: int = 1200,
         senses: Senses = "world",
         past: Mapping[str, ProgramPast] | None = None,
+        mute: Collection[str] = (),
     ) -> Mapping[str, ProgramResult]:
         """Run programs of several agents at the same time, tick by tick together.
 
@@ -185,6 +186,7 @@ class Simulator(ShownSimulator):
             senses: As for `run`.
             past: Pasts of interrupted programs by agent, from which they continue. With any
                 mapping, even an empty one, results list the calls of programs.
+            mute: Agents that cannot say or whisper anything; their programs fail if they try.
 
         Raises:
             InputError: There is no program, or as for `run`.
@@ -203,7 +205,8 @@ class Simulator(ShownSimulator):
                     "write the whole character, or an escape such as \\u{1f600}"
                 )
         check_senses(senses)
-        return self._engine.run(self._path, programs, _timeout(timeout_ticks), None, senses, past)
+        ticks = _timeout(timeout_ticks)
+        return self._engine.run(self._path, programs, ticks, None, senses, past, mute)
 
     def noting(self, model: "Model", **detail: str) -> "Model":
         """Return a model that asks another one and records each request and answer in the run.

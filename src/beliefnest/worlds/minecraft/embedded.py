@@ -125,6 +125,7 @@ class EmbeddedBody:
             programs=dict(programs),
             timeout_ticks=timeout_ticks,
             speech_ticks=rules.speech_ticks,
+            mute=sorted(rules.mute),
             remembers=rules.remembers,
             past={agent: msgspec.to_builtins(each) for agent, each in rules.past.items()},
             senses={agent: each.whole() for agent, each in telling.items()},

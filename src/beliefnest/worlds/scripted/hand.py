@@ -43,6 +43,11 @@ class SkillError(BeliefNestError):
         self.reason = reason
 
 
+def mute_fault(name: str) -> str:
+    """Return what an agent is told that tries to speak and may not."""
+    return f"{name} may not speak here"
+
+
 class Hand(msgspec.Struct, frozen=True):
     """Agent that acts in a scripted world.
 
@@ -54,6 +59,7 @@ class Hand(msgspec.Struct, frozen=True):
         signs: Texts of signs that it may know.
         ground: True ground, which carries and stops the body.
         speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
+        mute: True if it cannot say or whisper anything.
         mouth: Utterances that it is about to make, in order.
         uttered: Ticks of its latest utterances.
         news: Events of its bot about what it perceived, in the latest tick, but did not see.
@@ -70,6 +76,7 @@ class Hand(msgspec.Struct, frozen=True):
     signs: Callable[[], Mapping[Position, str]]
     ground: Callable[[], Ground]
     speech_ticks: int = 0
+    mute: bool = False
     mouth: list[object] = msgspec.field(default_factory=list)
     uttered: list[int] = msgspec.field(default_factory=list)
     news: list[Announcement] = msgspec.field(default_factory=list)

@@ -12,6 +12,7 @@ from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotBody, BotReads, OpenWindow, state_of
 from beliefnest.worlds.scripted.desk import Desk, DeskFacts, Prepared, TooIntricateError
 from beliefnest.worlds.scripted.guest import Guest, GuestEndedError, parsed, too_much
+from beliefnest.worlds.scripted.hand import mute_fault
 from beliefnest.worlds.scripted.requests import Request, at_place, error_of, fault_of, is_near
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.sfc32 import Sfc32
@@ -58,6 +59,7 @@ class JavaScriptProgram:
         seed: Seed of its random numbers.
         desk: Desk to share.
         speech_lasts: True if what it says takes time, so that its bot returns promises.
+        mute: True if its bot cannot speak.
     """
 
     def __init__(
@@ -69,9 +71,10 @@ class JavaScriptProgram:
         desk: Desk,
         *,
         speech_lasts: bool = False,
+        mute: bool = False,
     ) -> None:
         self._reads, self._skills, self._code, self._desk = reads, skills, code, desk
-        self._speech_lasts = speech_lasts
+        self._speech_lasts, self._mute = speech_lasts, mute
         self._random = Sfc32(seed)
         self._bag = OpenWindow("bot.inventory", lambda: reads.me.inventory, "items")
         self._guest: Guest | None = None
@@ -332,6 +335,8 @@ class JavaScriptProgram:
         return number
 
     def _speak(self, name: str, admission: Mapping[str, Any]) -> Any:
+        if self._mute:
+            raise RefusedError(mute_fault(self._reads.name))
         if self._speech_lasts:
             return self._promise(f"bot.{name}", admission)
         self._ask(f"bot.{name}", admission)

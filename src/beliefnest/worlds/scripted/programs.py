@@ -194,10 +194,12 @@ class RunningPrograms:
             signs=lambda: sense().signs,
             ground=ground,
             speech_ticks=rules.speech_ticks,
+            mute=agent in rules.mute,
         )
         past = rules.past.get(agent)
         begin = world.now if past is None else past.tick
-        program = self._program(BotReads(world, agent, sense), code, f"{seed} {begin} {agent}")
+        reads = BotReads(world, agent, sense)
+        program = self._program(reads, code, f"{seed} {begin} {agent}")
         missed = () if past is None else sense().announced
         run = _Run(
             hand, program, sense, missed=missed, memory=Memory(() if past is None else past.calls)
@@ -210,8 +212,10 @@ class RunningPrograms:
         calls = literal_calls(code, SKILLS)
         if calls is not None:
             return LiteralProgram(reads, code, calls, self._desk)
-        lasts = self._rules.speech_ticks > 0
-        return JavaScriptProgram(reads, SKILLS, code, seed, self._desk, speech_lasts=lasts)
+        lasts, mute = self._rules.speech_ticks > 0, reads.name in self._rules.mute
+        return JavaScriptProgram(
+            reads, SKILLS, code, seed, self._desk, speech_lasts=lasts, mute=mute
+        )
 
     def _hear(self, frame: Frame) -> None:
         self._happened.extend((frame.tick, event) for event in frame.events)

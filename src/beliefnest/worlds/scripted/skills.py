@@ -25,6 +25,7 @@ from beliefnest.worlds.scripted.hand import (
     block_in,
     doors_in,
     items_in,
+    mute_fault,
     number_in,
     point_in,
     text_in,
@@ -172,6 +173,8 @@ def _tell(hand: Hand, other: str, text: str) -> Doing:
 
 def _speak(hand: Hand) -> Doing:
     """Wait for the ticks that an utterance takes; several utterances take turns."""
+    if hand.mute:
+        raise SkillError(mute_fault(hand.name))
     if not hand.speech_ticks:
         yield 0
         return

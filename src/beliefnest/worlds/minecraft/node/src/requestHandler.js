@@ -95,8 +95,8 @@ class RequestHandler {
   }
 }
 
-function rulesOf ({ speech_ticks: speechTicks = 0, remembers = false, past = {} }) {
-  return { speechTicks, remembers, past }
+function rulesOf ({ speech_ticks: speechTicks = 0, remembers = false, past = {}, mute = [] }) {
+  return { speechTicks, remembers, past, mute }
 }
 
 module.exports = { PROTOCOL, RequestHandler }

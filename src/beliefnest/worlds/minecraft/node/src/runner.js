@@ -10,7 +10,7 @@ const { Memory } = require('./memory')
 const MOST_AIMS = 100
 // Number of ticks after the end of its program in which an agent may still land; a swimming agent never lands.
 const LANDING_TICKS = 100
-const USUAL = { speechTicks: 0, remembers: false, past: {} }
+const USUAL = { speechTicks: 0, remembers: false, past: {}, mute: [] }
 
 class Runner {
   /**
@@ -37,8 +37,8 @@ class Runner {
    * @param {object} programs code by agent
    * @param {number} timeoutTicks number of ticks, followed by this process, after which running programs are ended
    * @param {object} [senses] PERCEPTS by agent, for the agents whose programs read only percepts
-   * @param {{speechTicks: number, remembers: boolean, past: object}} [rules] ticks per utterance; whether calls of
-   *   programs are remembered; and PAST by agent, for programs that are resumed
+   * @param {{speechTicks: number, remembers: boolean, past: object, mute: string[]}} [rules] ticks per utterance; whether
+   *   calls of programs are remembered; PAST by agent, for programs that are resumed; and the agents that cannot speak
    * @returns {Promise<{tick: number, internal_state: Uint8Array, results: object}>} RESULT by agent
    */
   async run (name, programs, timeoutTicks, senses = {}, rules = USUAL) {
@@ -77,8 +77,9 @@ class Runner {
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal, memory, this.regions.waitOf?.(region, bot, abort.signal)), signal: abort.signal, aim }
     // Random numbers that agents share would reveal the acts of others.
     if (view !== null) request.random = randomOf(region, agent, past?.tick ?? region.tick)
-    const isRuled = rules.speechTicks > 0 || memory !== null
-    const speech = isRuled ? ruleSpeech(bot, { ticks: rules.speechTicks, memory, signal: abort.signal }) : null
+    const isMute = rules.mute.includes(agent)
+    const isRuled = rules.speechTicks > 0 || memory !== null || isMute
+    const speech = isRuled ? ruleSpeech(bot, { ticks: rules.speechTicks, memory, isMute, signal: abort.signal }) : null
     this.runProgram(request).then(async report => {
       if (speech !== null) await speech.over()
       abort.abort()

@@ -10,19 +10,21 @@ const TICK_MS = 50
  * @param {object} options
  * @param {number} options.ticks ticks per utterance; if above 0, methods that speak return a promise
  * @param {import('../memory').Memory | null} options.memory
+ * @param {boolean} options.isMute whether every utterance fails
  * @param {AbortSignal} options.signal when it is aborted, utterances that are still waiting are dropped
  * @returns {{over: () => Promise<void>, undo: () => void}} `over` waits until all utterances that began are said;
  *   `undo` restores the bot's own methods
  */
-function ruleSpeech (bot, { ticks, memory, signal }) {
+function ruleSpeech (bot, { ticks, memory, isMute, signal }) {
   const { chat, whisper } = bot
   let last = Promise.resolve()
   const inTurn = speak => (...words) => {
     last = last.then(() => passed(ticks, signal)).then(() => { if (!signal.aborted) speak(...words) })
     return last
   }
+  const refuse = () => { throw new Error(`${bot.username} may not speak here`) }
   const ruled = (name, speak) => {
-    const act = ticks > 0 ? inTurn(speak) : speak
+    const act = isMute ? refuse : ticks > 0 ? inTurn(speak) : speak
     if (memory === null) return act
     // Skills use the unrecorded method: the memory records a skill that speaks as a whole.
     return Object.assign((...words) => memory.say(name, words, act), { ofSkills: act })
