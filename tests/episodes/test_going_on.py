@@ -101,3 +101,24 @@ def test_there_has_to_be_one_to_go_on_with() -> None:
         e.play(2)
         assert "no interrupted program" in e.parts[0].decisions["ann"].fault
         assert said(e) == ["hello"]
+
+
+WAITS = """
+await waitTicks(bot, 3)
+await bot.waitForTicks(12)
+bot.chat('one')
+await waitForChat(bot, 13)
+bot.chat('two')
+"""
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_waits_go_on_for_the_remaining_time(world: str) -> None:
+    def spoken(round_ticks: int) -> list[tuple[int, str]]:
+        with bn.Episode(errand(round_ticks), {"ann": Program(WAITS)}, world=world) as episode:
+            episode.play(120 // round_ticks)
+            return [(tick, text) for tick, _, text in episode.nest["/"].state.chat]
+
+    whole, cut = spoken(100), spoken(10 if world == "scripted" else 2)
+    assert [text for _, text in cut] == ["one", "two"]
+    assert [abs(a - b) <= 1 for (a, _), (b, _) in zip(whole, cut, strict=True)] == [True, True]

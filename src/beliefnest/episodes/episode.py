@@ -543,7 +543,8 @@ class Episode:
     def _finish_part(self) -> None:
         """Play the last part to the end of its ticks, if that is not done yet."""
         nest, ticks = self.nest, self.task.form.round_ticks
-        mute = {*self.task.agents} - {*self.task.form.talk}
+        talk = self.task.form.talk
+        mute = set() if talk is None else {*self.task.agents} - {*talk}
         if self._people:
             if self._parts and not self._parts[-1].ended:
                 self._parts[-1] = play_part_with_people(

@@ -57,7 +57,10 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
         list[str], note("Agents whose policies are tested; empty: all agents not in `policies`.")
     ] = []
     policies: Annotated[dict[str, str], note("Policies of agents that are no players.")] = {}
-    talk: Annotated[list[str], note("Agents that may speak.")] = []
+    talk: Annotated[
+        list[str] | None,
+        note("Agents that may speak; others cannot. Without it only planners keep silent."),
+    ] = None
     play: Annotated[
         Literal["together", "turns"], note("Order in which the programs of a round run.")
     ] = "together"
@@ -132,7 +135,7 @@ def _faults_of_rules(
     """Yield the faults of rules of play: the keys, and a message."""
     yield from _faults_of_help(entry, agents)
     yield from _faults_of_possible_goals(entry, agents)
-    for name in sorted({*entry.players, *entry.goals, *entry.policies, *entry.talk}):
+    for name in sorted({*entry.players, *entry.goals, *entry.policies, *(entry.talk or ())}):
         if name not in agents:
             yield (), f"{quoted(name)} is none of the agents {_listed(agents)}"
         if name in entry.players and name in entry.policies:

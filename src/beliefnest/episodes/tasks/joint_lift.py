@@ -72,6 +72,7 @@ def instance(chance: random.Random, far: int, lifts: int, agents: int) -> dict[s
             "reach": [{"agents": list(feet), "sites": [list(map(list, s)) for s in sites.values()]}]
         },
         "players": ["anne"],
+        "talk": [],
         "policies": dict.fromkeys(companions, "search:0"),
         "round_ticks": _ROUND,
         # Long enough to go there, too short to come back from another lift.

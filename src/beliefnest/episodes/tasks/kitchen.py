@@ -72,6 +72,7 @@ def instance(chance: random.Random, orders: int, hatches: int, agents: int) -> d
         },
         "goal": {"reach": [{"container": list(table), "items": dict.fromkeys(dishes, 1)}]},
         "players": ["cook"],
+        "talk": [],
         "policies": dict.fromkeys(waiters, "search:0"),
         "round_ticks": 10,
         "rounds": 3 + orders * (4 * width + 2 * depth) // 10,

@@ -69,6 +69,7 @@ def instance(chance: random.Random, goals: int, reach: int) -> dict[str, Any]:
         "goals_known": False,
         "possible_goals": {"bob": possible},
         "players": ["anne"],
+        "talk": [],
         "policies": {"bob": "search:0"},
         "round_ticks": _ROUND,
         "rounds": _WATCHED - (-(reach + _LOBBY + depth - _APART) // _ROUND),

@@ -75,6 +75,7 @@ def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> di
         },
         "goals": {name: {} for name in watchmen},
         "players": ["spy"],
+        "talk": [],
         "policies": dict.fromkeys(watchmen, "search:0"),
         "round_ticks": 10,
         "rounds": -(-(width + 10) // 10),

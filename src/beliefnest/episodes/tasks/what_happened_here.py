@@ -106,6 +106,7 @@ def instance(chance: random.Random, reach: int) -> dict[str, Any]:
         "goals_known": False,
         "possible_goals": possible,
         "players": ["dan"],
+        "talk": [],
         "policies": dict.fromkeys(possible, "search:0"),
         "round_ticks": _ROUND,
         "rounds": -(-(reach + _NORTH + _SPARE) // _ROUND),

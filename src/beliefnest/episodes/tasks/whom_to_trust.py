@@ -82,6 +82,7 @@ def instance(chance: random.Random, reach: int) -> dict[str, Any]:
             "eve": {"help": help_goal, "deceive": deceive_goal},
         },
         "players": ["bob"],
+        "talk": [],
         "policies": {"eve": "search:0"},
         "round_ticks": _ROUND,
         "rounds": -(-(reach + 18) // _ROUND),

@@ -11,7 +11,7 @@ from beliefnest.worlds.protocol import Called
 
 _MOST = 2000
 """Largest number of remembered calls; a program with more begins anew."""
-_WAITS = "waitTicks"
+_WAITS = frozenset(("waitTicks", "waitForChat"))
 
 
 @dataclass
@@ -78,7 +78,7 @@ class Memory:
         return tuple(
             replace(entry.call, ticks=entry.before + tick - entry.begun)
             if entry.call.answer is None
-            and (entry.call.name == _WAITS or (entry.begun == first and not walked))
+            and (entry.call.name in _WAITS or (entry.begun == first and not walked))
             else entry.call
             for entry in self._entries.values()
         )

@@ -10,6 +10,8 @@ const DEEPEST = 6
 const WIDEST = 100
 const NO_WAY = 'NoPath'
 const DONE = JSON.stringify({ ok: true, value: null })
+/** Place of the number of ticks among the arguments of waits, and the number that counts if there is none. */
+const WAITS = new Map([['waitTicks', { at: 0 }], ['bot.waitForTicks', { at: 0 }], ['waitUntil', { at: 1, usual: 200 }], ['waitForChat', { at: 0, usual: 100 }]])
 
 class Memory {
   /**
@@ -65,7 +67,10 @@ class Memory {
 
   /** Return the arguments for a call that was interrupted: a wait continues with the ticks that are left. */
   left ({ name, before }, args) {
-    return name === 'waitTicks' && before > 0 && Number.isInteger(args[0]) ? [Math.max(1, args[0] - before), ...args.slice(1)] : args
+    if (!WAITS.has(name) || before === 0) return args
+    const { at, usual } = WAITS.get(name)
+    const ticks = args[at] ?? usual
+    return Number.isInteger(ticks) ? args.toSpliced(at, 1, Math.max(1, ticks - before)) : args
   }
 
   // Ignore calls that end after the program was ended.

@@ -1,11 +1,11 @@
 'use strict'
-/** Speech of programs: it can take time, and a program's memory can record it. */
+/** What programs do by methods of their bot: speech can take time, and a program's memory can record it and waits. */
 
 const TICK_MS = 50
 
 /**
- * Make each utterance of a bot take a number of ticks, one after the other, and record the program's utterances in its
- * memory.
+ * Make each utterance of a bot take a number of ticks, one after the other, and record the program's utterances and
+ * waits in its memory.
  * @param {object} bot
  * @param {object} options
  * @param {number} options.ticks ticks per utterance; if above 0, methods that speak return a promise
@@ -16,7 +16,7 @@ const TICK_MS = 50
  *   `undo` restores the bot's own methods
  */
 function ruleSpeech (bot, { ticks, memory, isMute, signal }) {
-  const { chat, whisper } = bot
+  const { chat, whisper, waitForTicks } = bot
   let last = Promise.resolve()
   const inTurn = speak => (...words) => {
     last = last.then(() => passed(ticks, signal)).then(() => { if (!signal.aborted) speak(...words) })
@@ -30,7 +30,9 @@ function ruleSpeech (bot, { ticks, memory, isMute, signal }) {
     return Object.assign((...words) => memory.say(name, words, act), { ofSkills: act })
   }
   Object.assign(bot, { chat: ruled('bot.chat', chat.bind(bot)), whisper: ruled('bot.whisper', whisper.bind(bot)) })
-  return { over: () => last, undo: () => { Object.assign(bot, { chat, whisper }) } }
+  // Skills and the bot's own code wait by other means.
+  if (memory !== null) bot.waitForTicks = (...args) => memory.call('bot.waitForTicks', args, waitForTicks)
+  return { over: () => last, undo: () => { Object.assign(bot, { chat, whisper, waitForTicks }) } }
 }
 
 /** Resolve after a number of ticks, or when the signal is aborted. */
