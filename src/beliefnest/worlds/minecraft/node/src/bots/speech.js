@@ -1,5 +1,5 @@
 'use strict'
-/** What programs do by methods of their bot: speech can take time, and a program's memory can record it and waits. */
+/** Methods of a program's bot: speech can take time, and a memory can record speech and waits. */
 
 const TICK_MS = 50
 
