@@ -318,9 +318,9 @@ class Episode:
         """Measure which agents needed and got help, and which help was superfluous.
 
         The method plays branches of a copy in memory: one for each agent, with the other players
-        idle, and one for each utterance or gift of a player, without it. Policies are asked again.
-        With models this takes time and tokens, which the episode does not count. Afterwards
-        `measures` contains the results.
+        idle, and one for each program in which a player says or gives something, without it.
+        Policies are asked again. With models this takes time and tokens, which the episode does not
+        count. Afterwards `measures` contains the results.
         """
         check_repeats(self._world, "played again to measure help")
         if self._help is None:

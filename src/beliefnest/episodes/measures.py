@@ -23,7 +23,7 @@ class Measures:
         success: True if the goal was reached.
         ticks: Ticks from the first round to success or the end.
         rounds: Number of rounds played.
-        messages: Number of utterances of players.
+        messages: Number of utterances of players, to the end of the last round.
         claims: Number of claims of players.
         true_claims: Number of claims that were true when they were made.
         false_claims: Number of claims that were false when they were made.
@@ -31,7 +31,7 @@ class Measures:
         taken_up: Number of times that a hearer took up a claim of a player.
         not_taken_up: Number of claims of players that no hearer took up.
         acted_on_false: Number of times that an agent opened a container in which it believed
-            something that was not there.
+            more of an item than there was.
         lost_rounds: Number of times that a policy gave no program, or failed.
         not_answered: Outcomes of models' answers without a program (`unread`, `cut`, ...).
         asked_again: Number of answers without a program after which a model was asked again.
@@ -46,8 +46,8 @@ class Measures:
         help_needed: Number of agents whose share of their goals would not have come true without
             the other players. None, also for the next two: not measured, see `Episode.help`.
         help_given: Number of these agents whose share came true.
-        help_superfluous: Number of utterances and gifts of players without which no agent would
-            be worse off.
+        help_superfluous: Number of programs in which players said or gave something and without
+            which no agent would be worse off.
     """
 
     task: str
