@@ -17,9 +17,10 @@ PLAYERS = {
     # One ledger, beside the times of cells.
     "SharedBudget": set(),
     "append_line": {"plan/spending.py", "studies/study_folder.py"},
-    # Commands that play many: a run, a study, a study played again, a suite, certificates.
+    # Commands that play many: a run, a study, both played again, a suite, certificates.
     "run_cells": {
-        *("cli/run.py", "studies/study.py", "studies/reproducing.py", "studies/suite_playing.py"),
+        *("cli/run.py", "studies/study.py", "studies/suite_playing.py"),
+        *("cli/supplement.py", "studies/reproducing.py"),
         "studies/items/functional/certifying.py",
     },
 }

@@ -34,10 +34,10 @@ def _told(recording: Recording, path: BeliefPath, tick: int | None) -> ToldMind:
     kept = recording.told
     of = path, recording.moment(path, tick), recording.history.generation
     if of not in kept:
-        told = _read(recording, path, tick)
+        mind = _read(recording, path, tick)
         if len(kept) == _KEPT:
             del kept[next(iter(kept))]
-        kept[of] = told
+        kept[of] = mind
     return kept[of]
 
 
