@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from beliefnest.cli.app import run_command_line
 from beliefnest_benchmarks.curve_files import drawn, save_curve
@@ -92,8 +93,7 @@ def test_a_curve_is_written_as_a_table_and_a_picture_with_its_aims() -> None:
 @pytest.mark.extra("matplotlib")
 @pytest.mark.parametrize("log", ["", "y", "xy"])
 def test_names_of_lines_have_room_and_aims_are_inside(log: str) -> None:
-    curve = Curve(*(getattr(CURVE, name) for name in Curve.__slots__[:-1]), log=log)
-    figure = drawn(curve, POINTS)
+    figure = drawn(replace(CURVE, log=log), POINTS)
     figure.draw_without_rendering()
     for axes, limit in zip(figure.axes, (10.0, 300.0), strict=True):
         low, high = axes.get_ylim()
