@@ -43,7 +43,7 @@ class Watch:
         named = {path for goal in goals.values() for path in goal.paths}
         self._limits_messages = any(goal.messages is not None for goal in goals.values())
         self.paths: Sequence[BeliefPath] = sorted({(), *named})
-        # What the conditions have read of reality the last time, and the agents' items now.
+        # Results of the last test, the agents whose places it read, and all agents' items now.
         self._met: Sequence[Sequence[bool]] = ()
         self._places: set[str] = set()
         self._items: dict[str, Items | None] = {}

@@ -78,7 +78,7 @@ def _call(statement: Any, source: bytes, skills: Collection[str]) -> LiteralCall
     name, (bot, *others) = _named(call, _SOME)
     if bot.text != b"bot" or name.text.decode() not in skills:
         raise _OtherProgramError
-    # What it calls is in the first line of the statement, by which errors name it.
+    # Errors name the first line of the statement, so the name of the call must be in it.
     if _ENDS.search(source[statement.start_byte : name.start_byte].decode()):
         raise _OtherProgramError
     start = len(source[: name.start_byte].decode())
