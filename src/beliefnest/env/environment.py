@@ -382,7 +382,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         return ActorMind(agent, state, things, places, cells, speaks, may_reach)
 
     def _may_speak(self, agent: str) -> bool:
-        return self._task is None or agent in (self._task.form.talk or ())
+        return self._task is None or agent in self._task.form.speakers
 
     def save(self) -> SavedEpisode:
         """Return the episode up to now, for `restore` of this environment or of a copy.

@@ -170,7 +170,7 @@ class TaskActing:
 
     def _is_refused(self, agent: str, action: Call | str) -> bool:
         speaks = isinstance(action, Call) and action.skill in SPEECH
-        return speaks and agent not in (self._task.form.talk or ())
+        return speaks and agent not in self._task.form.speakers
 
     def _deed(self, agent: str, refused: set[str]) -> ActionState:
         if agent in refused:

@@ -80,7 +80,7 @@ class Brief(msgspec.Struct, frozen=True):
             agents=task.agents,
             goals=goals,
             possible_goals=possible,
-            talk=tuple(task.form.talk or ()),
+            talk=task.form.speakers,
             rounds=task.form.rounds,
             round_ticks=task.form.round_ticks,
             turns=task.form.play == "turns",

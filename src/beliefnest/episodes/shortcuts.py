@@ -32,7 +32,7 @@ def rules_of(task: Task, keys: Sequence[str] = ()) -> tuple[str, ...]:
     others = [name for name in task.agents if name not in task.players][:_MOST_OTHERS]
     apart = [f"{far}-{name}" for name in others for far in ("nearest", "farthest")]
     chosen = list(keys) or [*apart, *_KEYS]
-    if set(task.players) & set(task.form.talk or ()):
+    if set(task.players) & set(task.form.speakers):
         silent = [] if keys else [f"{CHANCE}+plan", f"{CHANCE}+plan:tell-all"]
         names = [*silent, *(f"{key}+plan:tell" for key in chosen if key != "copy")]
     elif any(each.fact.store is not None for each in task.goal.reach):

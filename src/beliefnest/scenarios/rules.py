@@ -72,6 +72,11 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
         int, msgspec.Meta(ge=1, le=12_000, description="Ticks after which programs are cut.")
     ] = 20
 
+    @property
+    def speakers(self) -> tuple[str, ...]:
+        """Agents that `talk` names."""
+        return tuple(self.talk or ())
+
 
 def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
     """Return the goal of an entry.
@@ -135,7 +140,7 @@ def _faults_of_rules(
     """Yield the faults of rules of play: the keys, and a message."""
     yield from _faults_of_help(entry, agents)
     yield from _faults_of_possible_goals(entry, agents)
-    for name in sorted({*entry.players, *entry.goals, *entry.policies, *(entry.talk or ())}):
+    for name in sorted({*entry.players, *entry.goals, *entry.policies, *entry.speakers}):
         if name not in agents:
             yield (), f"{quoted(name)} is none of the agents {_listed(agents)}"
         if name in entry.players and name in entry.policies:
