@@ -170,6 +170,25 @@ def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFix
         assert run_command_line(wrong) == 2, wrong
 
 
+def test_the_command_finishes_an_interrupted_last_round(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["play", "help-find", "--seed", "1", "--rounds", "1"]
+    assert run_command_line(arguments) == 1
+    whole = capsys.readouterr().out
+    arguments += ["--out", str(tmp_path / "run")]
+    with monkeypatch.context() as patch:
+        # Decisions are recorded, and then the process is interrupted.
+        patch.setattr("beliefnest.episodes.episode.play_part", _interrupted)
+        assert run_command_line(arguments) == 130
+    assert run_command_line(arguments) == 1
+    assert capsys.readouterr().out == whole
+
+
+def _interrupted(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
 def test_the_command_tells_if_a_task_is_not_what_it_claims(
     capsys: pytest.CaptureFixture[str],
 ) -> None:

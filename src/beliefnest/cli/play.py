@@ -13,7 +13,7 @@ from beliefnest.cli.console import Printed, print_report, progress_on, result_ta
 from beliefnest.cli.options import PlayOptions, joining_address
 from beliefnest.cli.terminal_text import printable, say
 from beliefnest.episodes.considered import considered_lines
-from beliefnest.episodes.episode import Episode
+from beliefnest.episodes.episode import Episode, play_through
 from beliefnest.episodes.helping import Help
 from beliefnest.episodes.policies import with_query
 from beliefnest.episodes.record import Budget
@@ -61,14 +61,7 @@ def play_task(options: PlayOptions) -> int:
         _episode(task, policies, options) as episode,
         progress_on(task.name) as on_progress,
     ):
-        limit = task.form.rounds if options.rounds is None else options.rounds
-        while episode.rounds < limit and not episode.is_over:
-            on_progress(f"round {episode.rounds + 1}", episode.rounds, limit)
-            episode.play(1)
-        if options.measure_help:
-            on_progress("playing branches without help", limit, limit)
-            episode.help()
-        on_progress("over", limit, limit)
+        play_through(episode, on_progress, rounds=options.rounds, measure_help=options.measure_help)
         report = _report(episode, options)
         lost = episode.model_errors
     print_report(report, _parts(report), as_json=options.json)

@@ -42,6 +42,7 @@ from beliefnest.episodes.rounds import Asker, replayed, slots_of
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.watching import Watch
 from beliefnest.errors import InputError, ModelError
+from beliefnest.nest.acting.script import OnProgress
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import MAIN
 from beliefnest.scenarios.goals import Progress
@@ -564,3 +565,26 @@ class Episode:
     def _watch(self) -> Progress:
         """Return the progress of the task's goal."""
         return self._watching.up_to_now(self.nest)[""]
+
+
+def play_through(
+    episode: Episode, on_progress: OnProgress, *, rounds: int | None, measure_help: bool
+) -> None:
+    """Play an episode, also one that was interrupted, to its end.
+
+    Args:
+        episode: The episode.
+        on_progress: Function that is called before each round and at the end; it may raise.
+        rounds: Limit of all its rounds; None: the task's.
+        measure_help: Whether to measure help then.
+    """
+    limit = episode.task.form.rounds if rounds is None else rounds
+    # A round that was interrupted counts as played, so it is finished first.
+    episode.play(0)
+    while episode.rounds < limit and not episode.is_over:
+        on_progress(f"round {episode.rounds + 1}", episode.rounds, limit)
+        episode.play(1)
+    if measure_help:
+        on_progress("playing branches without help", limit, limit)
+        episode.help()
+    on_progress("over", limit, limit)

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.choosing import check_played
-from beliefnest.episodes.episode import Episode
+from beliefnest.episodes.episode import Episode, play_through
 from beliefnest.episodes.policies import (
     draws_by_seed,
     is_program,
@@ -133,12 +133,13 @@ class EpisodeCell(msgspec.Struct, frozen=True):
             worlds=stage.worlds,
             names=names,
         ) as episode:
-            while not episode.is_over:
-                episode.play(1)
-                _raise_first(episode)
-            if key.setting.get("help"):
-                episode.help()
-                _raise_first(episode)
+
+            def stop_at_error(*_: object) -> None:
+                for error in episode.model_errors:
+                    raise error
+
+            measure_help = bool(key.setting.get("help"))
+            play_through(episode, stop_at_error, rounds=None, measure_help=measure_help)
             return {
                 "error": None,
                 "run": "" if store is None else f"runs/{store.name}",
@@ -146,11 +147,6 @@ class EpisodeCell(msgspec.Struct, frozen=True):
                 "why_not": episode.why_not,
                 "measures": episode.measures.row(),
             }
-
-
-def _raise_first(episode: Episode) -> None:
-    for error in episode.model_errors:
-        raise error
 
 
 def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
