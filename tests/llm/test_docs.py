@@ -5,9 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.budget import AnswerLimits, RunLimits
 from beliefnest.llm.providers import PROVIDERS
-from beliefnest.llm.remote import AnswerLimits
 from beliefnest.llm.retrying import RetryPolicy
 
 ROOT = Path(__file__).parents[2]

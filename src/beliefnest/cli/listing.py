@@ -8,7 +8,7 @@ from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.terminal_text import say
 from beliefnest.episodes.tasks import task_names
 from beliefnest.importing import hidden_entries, installed_names, told_entry
-from beliefnest.llm.resolve import model_names
+from beliefnest.llm.named_models import model_names
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.outline import builtin_outline
 from beliefnest.scenarios.sources import builtin_names

@@ -1,4 +1,4 @@
-"""Limits on the tokens and the cost of a run."""
+"""Limits on one answer, and on the tokens and the cost of a run."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -8,6 +8,25 @@ from beliefnest.llm.failures import LimitReachedError, UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Sampling, Usage, WrappedModel
 
 _TOKENS = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerLimits:
+    """Limits on one answer.
+
+    Attributes:
+        seconds: Longest silence after the first token; each token starts the count again.
+        first_token_seconds: Longest time from the request to the first token. A server may have to
+            load its model, and reads the whole prompt before it answers.
+        characters: Length, with thinking, at which an answer is cut off. No model writes as much;
+            this bounds the memory that a faulty server can use.
+        silent_bytes: Greatest number of bytes between two tokens.
+    """
+
+    seconds: float = 120.0
+    first_token_seconds: float = 600.0
+    characters: int = 4_000_000
+    silent_bytes: int = 2**26
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from msgspec.structs import fields
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
+from beliefnest.llm.budget import AnswerLimits
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, WrappedModel
-from beliefnest.llm.remote import AnswerLimits
 from beliefnest.skills.manifests import SkillDetail
 
 AskedForm = Literal["text", "structured"]

@@ -4,13 +4,14 @@ import math
 import warnings
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import msgspec
 
 from beliefnest.errors import BeliefNestError, ModelError
+from beliefnest.llm.budget import AnswerLimits
 from beliefnest.llm.connecting import ByteCount, TooManyBytesError, bounded_client
 from beliefnest.llm.failures import (
     TransientModelError,
@@ -52,25 +53,6 @@ _ANSWER = "answer"
 
 _MOST_TOKENS = 10**9
 """Greatest plausible token count. If a server reports more, usage is estimated instead."""
-
-
-@dataclass(frozen=True, slots=True)
-class AnswerLimits:
-    """Limits on one answer.
-
-    Attributes:
-        seconds: Longest silence after the first token; each token starts the count again.
-        first_token_seconds: Longest time from the request to the first token. A server may have to
-            load its model, and reads the whole prompt before it answers.
-        characters: Length, with thinking, at which an answer is cut off. No model writes as much;
-            this bounds the memory that a faulty server can use.
-        silent_bytes: Greatest number of bytes between two tokens.
-    """
-
-    seconds: float = 120.0
-    first_token_seconds: float = 600.0
-    characters: int = 4_000_000
-    silent_bytes: int = 2**26
 
 
 class RemoteModel(msgspec.Struct, frozen=True):

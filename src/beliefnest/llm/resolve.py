@@ -8,16 +8,16 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.errors import InputError, ModelError, UnknownNameError
-from beliefnest.llm.budget import MeteredModel, RunSpending
+from beliefnest.llm.budget import AnswerLimits, MeteredModel, RunSpending
 from beliefnest.llm.cache import CachedModel, CacheMode
 from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.llm.named_models import model_names
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.llm.option_models import OPTION_MODELS
 from beliefnest.llm.own_models import installed_models, names_own_model, own_model
 from beliefnest.llm.providers import PROVIDERS, endpoint
 from beliefnest.llm.recorded_models import FileRecordingModel, load_replay, load_script
-from beliefnest.llm.remote import AnswerLimits, RemoteModel
 from beliefnest.llm.retrying import RetryingModel, RetryPolicy, TellWait, tell_on_stderr
 from beliefnest.world.texts import quoted
 
@@ -57,13 +57,6 @@ class Connection:
         return next(self.cache.glob("*.json"), None) is not None
 
 
-def model_names() -> tuple[str, ...]:
-    """Return the forms of names that `resolve_model` accepts."""
-    remote = (f"{name}:MODEL" for name in PROVIDERS)
-    own = ("MODULE:CLASS", "FILE.py:CLASS", *installed_models())
-    return ("offline", *OPTION_MODELS, "replay:FILE", "scripted:FILE", *remote, *own)
-
-
 def resolve_model(
     name: str, environment: Mapping[str, str], *, limits: AnswerLimits | None = None
 ) -> Model:
@@ -97,6 +90,9 @@ def resolve_model(
         return load_replay(name, Path(rest))
     if kind == "scripted":
         return load_script(name, Path(rest))
+    # Its ways to servers take long to import.
+    from beliefnest.llm.remote import RemoteModel
+
     return RemoteModel(endpoint(PROVIDERS[kind], environment), rest, limits or AnswerLimits())
 
 
@@ -121,7 +117,11 @@ def check_model(name: str, environment: Mapping[str, str], connection: Connectio
         UnavailableModelError: Nothing listens at the address of its server.
     """
     model = _resolved(name, environment, connection)
-    if isinstance(model, RemoteModel) and not connection.holds_answers:
+    if not is_of_provider(name) or connection.holds_answers:
+        return
+    from beliefnest.llm.remote import RemoteModel
+
+    if isinstance(model, RemoteModel):
         model.check_server()
 
 

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import msgspec
 
-from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.budget import AnswerLimits, RunLimits
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.messages import Model
 from beliefnest.llm.model_settings import ModelSettings
-from beliefnest.llm.remote import AnswerLimits
 from beliefnest.llm.resolve import Connection, can_vary, is_free, open_model
 from beliefnest.plan.spending import SharedBudget
 from beliefnest.prompts import Renderer

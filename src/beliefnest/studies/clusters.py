@@ -133,7 +133,7 @@ def _numbers(names: Sequence[object]) -> dict[object, int]:
     return {name: number for number, name in enumerate(dict.fromkeys(names))}
 
 
-def _drawn(chance: np.random.Generator, count: int) -> npt.NDArray[np.float64]:
+def _drawn(chance: "np.random.Generator", count: int) -> npt.NDArray[np.float64]:
     """Return how often each of `count` clusters is drawn, for each draw of a bootstrap."""
     if not count:
         return np.zeros((DRAWS, 0))
