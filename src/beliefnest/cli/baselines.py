@@ -1,16 +1,18 @@
 """`beliefnest play --baselines`: a table of tasks by policies, and its Markdown page."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import date
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.options import PlayOptions
 from beliefnest.cli.playing import playing
 from beliefnest.episodes.episode import Episode
-from beliefnest.episodes.shortcuts import CHANCE, rules_of, trained_rule
+from beliefnest.episodes.shortcuts import policy_of, rules_of, trained_rule
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import parameters_of, source_of
 from beliefnest.errors import InputError, ModelError
@@ -24,7 +26,6 @@ _POLICIES, _ORDERS = ("random", "search", "omniscient:search"), (0, 1, 2)
 _HIDDEN_POLICIES, _HIDDEN_ORDERS = ("random", "search", "infer", "omniscient:search"), (0, 1)
 """Policies and orders of the players in tasks with hidden goals."""
 _BY = ("task", "needs", "policy")
-_RULE = "rule:"
 _TRAINED, _TRAINING = 10_000, 6
 """First instance on which linear rules are tried, apart from those of the table; their number."""
 _SHORTCUT = 0.5
@@ -37,6 +38,35 @@ _INCHES = 12.0, 3.2
 
 Group = Mapping[str, Any]
 """A row of a study's summary."""
+
+
+class PlayedTask(msgspec.Struct, frozen=True):
+    """Baselines of a task.
+
+    Attributes:
+        task: Its first instance.
+        plain: Rows of policies that are no rules.
+        ruled: Rows of rules without beliefs, by rule; the one that draws and the trained one last.
+    """
+
+    task: Task
+    plain: Sequence[Group]
+    ruled: Mapping[str, Group]
+
+    @property
+    def groups(self) -> list[Group]:
+        """Return all rows."""
+        return [*self.plain, *self.ruled.values()]
+
+    @property
+    def is_as_claimed(self) -> bool:
+        """Return True if the task needs exactly the order that it states, and no rule wins it."""
+        hides_goals = not self.task.form.goals_known
+        # A task without instances has one only, which a rule wins or not.
+        is_single = self.task.seed is None
+        return all(_is_as_claimed(each, hides_goals) for each in self.plain) and not any(
+            _is_shortcut(each, is_single=is_single) for each in self.ruled.values()
+        )
 
 
 def run_baselines(options: PlayOptions) -> int:
@@ -61,48 +91,29 @@ def run_baselines(options: PlayOptions) -> int:
     names = Task.names() if options.task is None else (options.task,)
     if options.page is not None and not set(names) <= set(Task.names()):
         raise InputError(f"--page is for built-in tasks, and {options.task} is none; leave it out")
-    groups = _played(names, options)
+    played = [_played(name, options) for name in names]
+    groups = [group for each in played for group in each.groups]
     if options.page is not None:
-        _draw(names, groups, options.page.parent / "img")
-        replace_file(options.page, page_of(names, groups, options.seeds))
+        _draw(played, options.page.parent / "img")
+        replace_file(options.page, page_of(played, options.seeds))
     table = result_table(*_COLUMNS, title="baselines")
     for each in groups:
         table.add_row(*_cells(each))
     content = {"seeds": options.seeds, "baselines": groups}
     print_report(content, [table], as_json=options.json)
-    tasks = [Task.load(name) for name in names]
-    hidden = {task.name for task in tasks if not task.form.goals_known}
-    # A task without instances has one only, which a rule wins or not.
-    single = {task.name for task in tasks if task.seed is None}
-    is_claimed = all(
-        not _is_shortcut(each, is_single=each["task"] in single)
-        if each["policy"].startswith(_RULE)
-        else _is_as_claimed(each, each["task"] in hidden)
-        for each in groups
-    )
-    return 0 if is_claimed else 1
+    return 0 if all(each.is_as_claimed for each in played) else 1
 
 
-def _played(names: Sequence[str], options: PlayOptions) -> list[dict[str, Any]]:
-    """Return the summary of the baselines of all tasks, in the order of the names."""
-    groups: list[dict[str, Any]] = []
-    for name in names:
-        trained = trained_rule(
-            partial(Task.load, name), range(_TRAINED, _TRAINED + min(_TRAINING, options.seeds))
-        )
-        policies, orders = (
-            (_HIDDEN_POLICIES, _HIDDEN_ORDERS) if _hides_goals(name) else (_POLICIES, _ORDERS)
-        )
-        rules = dict.fromkeys((*rules_of(Task.load(name)), trained))
-        study = Study(
-            tasks=[name], policies=(*policies, *rules), orders=orders, seeds=options.seeds
-        )
-        groups += _summary(study, options, Task.load(name).name)
-    return groups
-
-
-def _hides_goals(name: str) -> bool:
-    return not Task.load(name).form.goals_known
+def _played(name: str, options: PlayOptions) -> PlayedTask:
+    task, last = Task.load(name), _TRAINED + min(_TRAINING, options.seeds)
+    trained = trained_rule(partial(Task.load, name), range(_TRAINED, last))
+    known = task.form.goals_known
+    policies, orders = (_POLICIES, _ORDERS) if known else (_HIDDEN_POLICIES, _HIDDEN_ORDERS)
+    rules = {policy_of(rule): rule for rule in (*rules_of(task), trained)}
+    study = Study(tasks=[name], policies=(*policies, *rules), orders=orders, seeds=options.seeds)
+    groups = _summary(study, options, task.name)
+    ruled = {rules[each["policy"]]: each for each in groups if each["policy"] in rules}
+    return PlayedTask(task, [each for each in groups if each["policy"] not in rules], ruled)
 
 
 def _summary(study: Study, options: PlayOptions, part: str) -> list[dict[str, Any]]:
@@ -116,12 +127,12 @@ def _summary(study: Study, options: PlayOptions, part: str) -> list[dict[str, An
         return result.counted(_BY)
 
 
-def page_of(names: Sequence[str], groups: Sequence[Group], seeds: int) -> str:
+def page_of(played: Sequence[PlayedTask], seeds: int) -> str:
     """Return the page about the tasks, as Markdown."""
     lines = [
         "# Tasks",
         "",
-        f"{len(names)} built-in tasks for agents that act round after round"
+        f"{len(played)} built-in tasks for agents that act round after round"
         " ([episodes](episodes.md)).",
         "Each instance comes from a seed. Tests check that `search` solves a task with the order",
         "that the task needs, and does not solve it with one order less. If goals are hidden,",
@@ -138,7 +149,7 @@ def page_of(names: Sequence[str], groups: Sequence[Group], seeds: int) -> str:
         "",
         f"| {' | '.join(_COLUMNS)} |",
         "|" + "---|" * len(_COLUMNS),
-        *(f"| {' | '.join(_cells(each))} |" for each in _without_rules(groups)),
+        *(f"| {' | '.join(_cells(each))} |" for row in played for each in row.plain),
         "",
         "## Rules without beliefs",
         "",
@@ -151,34 +162,32 @@ def page_of(names: Sequence[str], groups: Sequence[Group], seeds: int) -> str:
         "",
         "| task | chance | best rule | success | others |",
         "|---|---|---|---|---|",
-        *_rule_lines(groups),
+        *map(_rule_line, played),
     ]
-    for name in names:
+    for each in played:
+        name, task = each.task.name, each.task
         first, _, rest = source_of(name).partition("\n\n")
         sizes = ", ".join(
             f"`{key}` {low} to {high} ({default})"
             for key, (default, low, high) in parameters_of(name).items()
         )
         lines += ["", f"## {name}", "", f"**{first}**", "", rest, ""]
-        goals = " Goals are hidden." if _hides_goals(name) else ""
-        lines += [f"Order {Task.load(name).order}.{goals} Sizes: {sizes}.", ""]
+        goals = "" if task.form.goals_known else " Goals are hidden."
+        lines += [f"Order {task.order}.{goals} Sizes: {sizes}.", ""]
         lines += [f"`beliefnest play {name}`", "", f"![An instance of {name}](img/task-{name}.png)"]
     return "\n".join(lines) + "\n"
 
 
-def _draw(names: Sequence[str], groups: Sequence[Group], folder: Path) -> None:
+def _draw(played: Sequence[PlayedTask], folder: Path) -> None:
     folder.mkdir(exist_ok=True)
-    figure = plot_accuracy(_without_rules(groups), ("task", "policy"))
+    plain = [group for each in played for group in each.plain]
+    figure = plot_accuracy(plain, ("task", "policy"))
     figure.set_size_inches(*_INCHES)
     with replacing(folder / "baselines.png") as out:
         figure.savefig(out, format="png", dpi=150)
-    for name in names:
-        with Episode(Task.load(name)) as episode:
-            episode.nest.figure(["/"]).save(str(folder / f"task-{name}.png"))
-
-
-def _without_rules(groups: Sequence[Group]) -> list[Group]:
-    return [each for each in groups if not each["policy"].startswith(_RULE)]
+    for each in played:
+        with Episode(each.task) as episode:
+            episode.nest.figure(["/"]).save(str(folder / f"task-{each.task.name}.png"))
 
 
 def _cells(group: Group) -> tuple[str, ...]:
@@ -213,21 +222,14 @@ def _is_shortcut(group: Group, *, is_single: bool) -> bool:
     return bool(group["low"] > _SHORTCUT)
 
 
-def _rule_lines(groups: Sequence[Group]) -> Iterator[str]:
-    """Yield the table of rules without beliefs: for each task chance, and the best rules."""
-    tasks: dict[str, list[Group]] = {}
-    for each in groups:
-        if each["policy"].startswith(_RULE):
-            tasks.setdefault(each["task"], []).append(each)
-    for task, rows in tasks.items():
-        level = next(row for row in reversed(rows) if CHANCE in row["policy"].partition(":")[2])
-        ranked = sorted(rows, key=lambda row: -row["right"])
-        best = ranked[0]
-        others = ", ".join(
-            f"`{row['policy'].removeprefix(_RULE)}` {row['right']}" for row in ranked[1:]
-        )
-        cells = (task, _rate(level), f"`{best['policy']}`", _rate(best), others)
-        yield f"| {' | '.join(cells)} |"
+def _rule_line(played: PlayedTask) -> str:
+    """Return the line of a task about rules without beliefs: chance, and the best rules."""
+    level = list(played.ruled.values())[-2]
+    ranked = sorted(played.ruled.items(), key=lambda each: -each[1]["right"])
+    _, best = ranked[0]
+    others = ", ".join(f"`{rule}` {row['right']}" for rule, row in ranked[1:])
+    cells = (played.task.name, _rate(level), f"`{best['policy']}`", _rate(best), others)
+    return f"| {' | '.join(cells)} |"
 
 
 def _rate(group: Group) -> str:

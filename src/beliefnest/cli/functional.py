@@ -11,11 +11,7 @@ from beliefnest.cli.options import ItemsOptions
 from beliefnest.errors import InputError
 from beliefnest.files import replace_file, replacing
 from beliefnest.plan.jobs import OnStudyProgress
-from beliefnest.studies.items.functional.certifying import (
-    Certificate,
-    certified,
-    chance_of,
-)
+from beliefnest.studies.items.functional.certifying import Certificate, certified
 from beliefnest.studies.items.functional.pairing import (
     FUNCTIONAL,
     by_order,
@@ -88,8 +84,8 @@ def _certificates(done: Sequence[Certificate]) -> Table:
             _rate(each.solved),
             "" if each.lower is None else _rate(each.lower),
             "" if each.bound is None else f"{each.bound:.0%}",
-            "" if best is None else _rate(chance_of(each.rules)),
-            "" if best is None else f"{best[0].removeprefix('rule:')} {_rate(best[1])}",
+            "" if each.chance is None else _rate(each.chance),
+            "" if best is None else f"{best[0]} {_rate(best[1])}",
             "NO" if each.faults else "yes",
         )
     return table

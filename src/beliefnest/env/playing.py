@@ -16,12 +16,8 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.skills.calls import Call
 from beliefnest.worlds.by_name import Worlds
-from beliefnest.worlds.protocol import Fault
 
 _MOST_SCENARIOS = 16
-_FAILED = ("no_way", "failed", "lost")
-_ONLY_LINE = str(Fault("", line=1))
-"""Beginning of errors of a call, whose program has one line."""
 
 
 @dataclass(frozen=True)
@@ -176,10 +172,10 @@ class TaskActing:
         if agent in refused:
             return ActionState(f"{agent} may not speak in this task; it did nothing")
         ended = latest_end(self._episode.parts, agent)
-        error = ended.message if ended.how in _FAILED else ""
-        if isinstance(self._choosers[agent].action, Call):
-            error = error.removeprefix(_ONLY_LINE)
-        return ActionState(error, busy=ended.how == "cut")
+        # The program of a call has one line, which is not worth naming.
+        is_call = isinstance(self._choosers[agent].action, Call)
+        error = ended.error if is_call else ended.message
+        return ActionState(error if ended.has_failed else "", busy=ended.how == "cut")
 
     def _earned(self, agent: str) -> float:
         """Return the reward for the latest round, by the agent's own goal."""

@@ -6,10 +6,9 @@ from typing import Literal
 import msgspec
 
 from beliefnest.episodes.considered import SearchTrace
-from beliefnest.worlds.protocol import ProgramPast
+from beliefnest.worlds.protocol import Fault, ProgramPast
 
 HowEnded = Literal["none", "ok", "cut", "no_way", "failed", "lost"]
-_FAILED = ("no_way", "failed", "lost")
 
 
 class Spent(msgspec.Struct, frozen=True):
@@ -67,12 +66,24 @@ class Ended(msgspec.Struct, frozen=True):
         how: `ok`; `cut` at the end of the round; `no_way` on foot, as far as the agent knows;
             `failed`; `lost`: the policy gave no program in time; `none`: the policy chose to do
             nothing.
-        message: Error in words; empty if there was none.
+        error: Error in words, without its line; empty if there was none.
+        line: Line of the program, from 1; None if unknown.
     """
 
     program: str = ""
     how: HowEnded = "none"
-    message: str = ""
+    error: str = msgspec.field(default="", name="message")
+    line: int | None = None
+
+    @property
+    def message(self) -> str:
+        """Return the error in words, with its line; empty if there was none."""
+        return str(Fault(self.error, line=self.line))
+
+    @property
+    def has_failed(self) -> bool:
+        """Return True if the program failed or is missing."""
+        return self.how in ("no_way", "failed", "lost")
 
 
 class RoundPart(msgspec.Struct, frozen=True):
@@ -129,7 +140,7 @@ def failures_in(parts: Sequence[RoundPart], per_round: int) -> tuple[Failure, ..
         Failure(number // per_round, agent, ended.how, part.reason(agent))
         for number, part in enumerate(parts)
         for agent, ended in part.ended.items()
-        if ended.how in _FAILED
+        if ended.has_failed
     )
 
 

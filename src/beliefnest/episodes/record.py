@@ -8,7 +8,7 @@ import msgspec
 from beliefnest.episodes.decided import Decision, Ended, RoundPart, Spent
 from beliefnest.errors import BranchError, InputError, NotBegunError, StoreError
 from beliefnest.world.texts import quoted
-from beliefnest.worlds.protocol import NO_WAY, Fault, ProgramPast, ProgramResult
+from beliefnest.worlds.protocol import NO_WAY, ProgramPast, ProgramResult
 
 _BEGINS, _START, _BRANCHES = "episode begins", "episode", "episode branches"
 _LAST = "episode branch played last"
@@ -140,11 +140,10 @@ def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
     if fault.kind == "timeout":
         return Ended(decision.program, "cut", "the round was over first; it may go on")
     if fault.reason == NO_WAY:
-        return Ended(decision.program, "no_way", str(fault))
+        return Ended(decision.program, "no_way", fault.message, fault.line)
     if fault.skill is not None:
-        shown = Fault(f"{fault.skill} did not work", line=fault.line)
-        return Ended(decision.program, "failed", str(shown))
-    return Ended(decision.program, "failed", str(fault))
+        return Ended(decision.program, "failed", f"{fault.skill} did not work", fault.line)
+    return Ended(decision.program, "failed", fault.message, fault.line)
 
 
 def holds_episode(nest: Keeps) -> bool:

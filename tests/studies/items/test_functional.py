@@ -47,11 +47,11 @@ def test_a_family_that_shows_its_answer_is_refused(tmp_path):
         ({"solved": (19, 20)}, "search:2 wins 19 of 20"),
         ({"bound": 0.6}, "one course wins 60% of the instances that look the same"),
         ({"lower": (13, 20)}, "search:1 wins 13 of 20, above 33%"),
-        ({"rules": {"rule:first": (14, 21)}}, "rule:first wins 14 of 21, above 33%"),
+        ({"rules": {"first": (14, 21)}}, "rule:first wins 14 of 21, above 33%"),
     ],
 )
 def test_each_fault_of_a_family_is_named(values, fault):
-    sound = {"solved": (20, 20), "lower": (0, 20), "bound": 1 / 3, "rules": {"rule:any": (9, 21)}}
+    sound = {"solved": (20, 20), "lower": (0, 20), "bound": 1 / 3, "rules": {"any": (9, 21)}}
     assert Certificate("tell", 2, 2, **sound, hidden="missed").faults == []
     assert Certificate("tell", 2, 2, **{**sound, **values}, hidden="missed").faults == [fault]
 

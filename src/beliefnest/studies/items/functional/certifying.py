@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 from msgspec.structs import asdict
 
-from beliefnest.episodes.shortcuts import CHANCE, rules_of, trained_rule
+from beliefnest.episodes.shortcuts import policy_of, rules_of, trained_rule
 from beliefnest.episodes.task import Task
 from beliefnest.errors import ModelError
 from beliefnest.llm.budget import RunLimits
@@ -52,7 +52,8 @@ class Certificate(msgspec.Struct, frozen=True):
         groups: Number of groups of siblings in which all courses were tried.
         bound: Greatest rate at which one course for all siblings of a group wins; None: none tried.
         rules: Episodes that each rule without beliefs about others won, on whole groups of
-            siblings; at order 0, where rules may win, none is played.
+            siblings, the one that draws and the trained one last; at order 0, where rules may win,
+            none is played.
     """
 
     family: str
@@ -79,16 +80,22 @@ class Certificate(msgspec.Struct, frozen=True):
         if self.bound > _MOST:
             faults.append(f"one course wins {self.bound:.0%} of the instances that look the same")
         lower = {} if self.lower is None else {f"search:{self.order - 1}": self.lower}
-        for name, (won, played) in {**lower, **self.rules}.items():
+        ruled = {policy_of(rule): tally for rule, tally in self.rules.items()}
+        for name, (won, played) in {**lower, **ruled}.items():
             if wilson_interval(won, played)[0] > self.bound:
                 faults.append(f"{name} wins {won} of {played}, above {self.bound:.0%}")
         return faults
 
+    @property
+    def chance(self) -> Tally | None:
+        """Return the episodes won by the rule that draws among the places; None: none played."""
+        return list(self.rules.values())[-2] if self.rules else None
+
     def plain(self) -> dict[str, Any]:
         """Return the values by name, with intervals of the rules."""
         rules = {
-            name: {"won": won, "played": played, "interval": wilson_interval(won, played)}
-            for name, (won, played) in self.rules.items()
+            policy_of(rule): {"won": w, "played": played, "interval": wilson_interval(w, played)}
+            for rule, (w, played) in self.rules.items()
         }
         return {**asdict(self), "rules": rules, "certified": not self.faults, "faults": self.faults}
 
@@ -116,7 +123,7 @@ def certified(
     rules: Sequence[str] = ()
     if order and hidden:
         trained = trained_rule(family.instance, range(_TRAINED, _TRAINED + _TRAINING))
-        rules = tuple(dict.fromkeys((*rules_of(first), trained)))
+        rules = (*rules_of(first), trained)
     cells = [
         _cell(first, seed, family.siblings(seed, hidden), rules, courses=seed in groups[:_EXACT])
         for seed in groups
@@ -127,6 +134,7 @@ def certified(
     certificate = partial(Certificate, first.name, family.condition, order, searched[-1])
     if not hidden:
         return certificate()
+    played = count * len(groups)
     best = [result["best"] for result in results if result["best"] is not None]
     return certificate(
         lower=searched[0] if order else None,
@@ -135,7 +143,7 @@ def certified(
         groups=len(best),
         bound=sum(best) / (count * len(best)),
         rules={
-            rule: (sum(sum(each["rules"].get(rule, ())) for each in results), count * len(groups))
+            rule: (sum(sum(r["rules"].get(policy_of(rule), ())) for r in results), played)
             for rule in rules
         },
     )
@@ -151,7 +159,8 @@ def _cell(
 ) -> GroupCell:
     """Return the cell of a group of siblings, or of one instance."""
     content = digest([each.plain() for each in siblings])[:16]
-    key = GroupKey(first.name, content, seed, first.order, rules, courses)
+    names = tuple(map(policy_of, rules))
+    key = GroupKey(first.name, content, seed, first.order, names, courses)
     return GroupCell(key, siblings)
 
 
@@ -175,8 +184,3 @@ def _played(
             raise ModelError(f"an episode of {cell.key.task} has no result: {why}")
         results.append(result)
     return results
-
-
-def chance_of(rules: Mapping[str, Tally]) -> Tally:
-    """Return the episodes won by the rule that draws among the places."""
-    return next(tally for name, tally in reversed(list(rules.items())) if CHANCE in name)
