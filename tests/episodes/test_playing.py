@@ -62,7 +62,12 @@ def test_who_says_too_much_has_failed() -> None:
     with bn.Episode(task(goal=goal, rounds=6), {"ann": Says(), "bob": Says()}) as played:
         played.play()
         assert (played.success, played.rounds, played.messages) == (False, 2, 4)
+        assert played.view("ann").messages == 4
         assert played.why_not == "more than 3 messages"
+    with bn.Episode(
+        task(goal=goal, players=["ann"], rounds=2), {"ann": Says(), "bob": Says()}
+    ) as played:
+        assert (played.play().messages, played.view("ann").messages) == (2, 2)
 
 
 def test_what_was_missed_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -87,12 +87,12 @@ def policies(world: Played, path: str) -> object:
     own, nest = world.nest[path], world.nest
     agent = path.rpartition("/")[2]
     brief = Brief(
-        *("task", AGENTS, {agent: Goal()}, {}, AGENTS, 3, 60, False, 1),
+        *("task", AGENTS, AGENTS, {agent: Goal()}, {}, AGENTS, 3, 60, False, 1),
         places={"yard": (1, 1, 5)},
         seed=0,
     )
     view = AgentView(
-        *(agent, brief, 1, Ended("none"), nest.at(nest.tick)[path]),
+        *(agent, brief, 1, Ended(), nest.at(nest.tick)[path]),
         lambda depth, tick: own.imagination(depth, 1, tick),
         own.noting,
         (),

@@ -1,6 +1,6 @@
 """View of a policy: its agent's own belief, the beliefs below it, and the task."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
 from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
@@ -30,12 +30,20 @@ GO_ON = "go on"
 """Text that a policy returns instead of a program to continue its last one, which was cut."""
 
 
+def utterances(
+    chat: Sequence[tuple[int, str, str]], players: Collection[str], start: int
+) -> Sequence[tuple[int, str, str]]:
+    """Return the utterances that a goal counts: those of players after its episode's first tick."""
+    return [line for line in chat if line[0] > start and line[1] in players]
+
+
 class Brief(msgspec.Struct, frozen=True):
     """Knowledge of one agent about a task; the task's description is not part of it.
 
     Attributes:
         task: Name of the task.
         agents: Names of all agents, sorted.
+        players: Names of the players, whose utterances count for `messages` of a goal.
         goals: Goals that the agent knows: of all agents, or of itself alone.
         possible_goals: Goals that other agents may have, by agent and name; empty where all goals
             are known. Nothing is known of the goal of an agent that is in neither.
@@ -50,6 +58,7 @@ class Brief(msgspec.Struct, frozen=True):
 
     task: str
     agents: tuple[str, ...]
+    players: tuple[str, ...]
     goals: Mapping[str, Goal]
     possible_goals: Mapping[str, Mapping[str, Goal]]
     talk: tuple[str, ...]
@@ -78,6 +87,7 @@ class Brief(msgspec.Struct, frozen=True):
         return cls(
             task=task.name,
             agents=task.agents,
+            players=task.players,
             goals=goals,
             possible_goals=possible,
             talk=task.form.speakers,
@@ -227,6 +237,12 @@ class AgentView:
             for tick, speaker, text in self.state.chat
             if tick > since and speaker != self.agent
         ]
+
+    @property
+    def messages(self) -> int:
+        """Return the number of utterances that count for a goal, as far as the agent heard them."""
+        start = self.tick - self.round * self.brief.whole_round
+        return len(utterances(self.state.chat, self.brief.players, start))
 
     @property
     def spoken(self) -> Mapping[str, frozenset[str]]:

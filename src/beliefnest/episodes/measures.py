@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
+from beliefnest.episodes.agent_view import utterances
 from beliefnest.episodes.decided import Failure, RoundPart, Spent
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
@@ -137,7 +138,7 @@ def measured(episode: Measurable) -> Measures:
     """Return the measures of an episode up to now."""
     nest, task = episode.nest, episode.task
     players, start = set(task.players), episode.start
-    said = [line for line in nest["/"].state.chat if line[0] > start and line[1] in players]
+    said = utterances(nest["/"].state.chat, players, start)
     claims = [each for each in nest.claims() if each.tick > start and each.speaker in players]
     taken = [
         sum(each.taken_up(f"/{name}") for name in nest.agents if name != each.speaker)

@@ -146,6 +146,23 @@ def test_possible_goals_are_as_likely_until_the_other_moves(tmp_path: Path) -> N
         assert posterior(episode.view("ann"), 1)["bob"]["north"] > 0.95
 
 
+class Chatty:
+    """Policy that says something in each round."""
+
+    def act(self, view: bn.AgentView) -> str:
+        """Return the program."""
+        return f"await say(bot, 'round {view.round}')"
+
+
+def test_who_is_no_player_uses_up_no_message(tmp_path: Path) -> None:
+    file = tmp_path / "bring.yaml"
+    file.write_text(f"{TASK.replace(']}]}', ']}], messages: 0}')}players: [ann]\n")
+    policies = {"ann": "search:0", "bob": Chatty()}
+    with bn.Episode(bn.Task.load(str(file)), policies) as episode:
+        courses = episode.play(2).search_trace("ann", 1).courses
+    assert courses[0].score[0] < 2  # not violated
+
+
 def test_a_goal_that_the_planner_cannot_express_keeps_its_share(tmp_path: Path) -> None:
     file = tmp_path / "bring.yaml"
     belief = "    belief: {reach: [{path: /ann, agent: bob, at: [2, 1, 2]}]}\n"

@@ -139,17 +139,9 @@ class Expecting:
 
     def _judged(self, each: _Supposition, calls: Sequence[Call], score: CourseScore) -> CourseScore:
         """Return a score with the utterances counted that the goal allows."""
-        most = each.brief.goals[self._view.agent].messages
-        if most is not None and self._spoken + sum(c.skill == "say" for c in calls) > most:
-            return (VIOLATED, 0.0)
-        return score
-
-    @property
-    def _spoken(self) -> int:
-        """Number of utterances since the first round began."""
-        view = self._view
-        start = view.tick - view.round * view.brief.whole_round
-        return sum(tick > start for tick, _, _ in view.state.chat)
+        view, most = self._view, each.brief.goals[self._view.agent].messages
+        own = sum(call.skill == "say" for call in calls) if view.agent in each.brief.players else 0
+        return score if most is None or view.messages + own <= most else (VIOLATED, 0.0)
 
 
 def uniform(brief: Brief) -> GoalShares:
