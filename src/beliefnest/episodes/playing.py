@@ -1,13 +1,19 @@
 """Playing of one part of a round, in virtual time or together with people."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import partial
 
 from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.decided import Ended, RoundPart
-from beliefnest.episodes.live_people import RealRound
+from beliefnest.episodes.live_people import people_in
+from beliefnest.episodes.policies.simple import Person
 from beliefnest.episodes.record import cut_in, ended_as, reasons_in
 from beliefnest.nest.face.nest import Nest
-from beliefnest.worlds.protocol import ProgramPast, ProgramResult
+from beliefnest.world.values import TICKS_PER_SECOND
+from beliefnest.worlds.protocol import ProgramPast
+
+_LONGEST = 20
+"""Number of part lengths after which the episode no longer waits for an idle person."""
 
 
 def play_part(
@@ -26,9 +32,8 @@ def play_part(
         The part with its results.
     """
     part, (programs, past) = parts[-1], _programs(parts)
-    results: Mapping[str, ProgramResult] = {}
-    if programs:
-        results = nest["/"].run_all(programs, ticks, senses="percepts", past=past, mute=mute)
+    run = partial(nest["/"].run_all, senses="percepts", past=past, mute=mute)
+    results = run(programs, ticks) if programs else {}
     if nest.tick < end:
         nest["/"].step(end - nest.tick)
     look_around(nest)
@@ -52,22 +57,42 @@ def play_part_with_people(
         parts: All parts up to this one.
         ticks: Length of the part; it is longer if a person is awaited.
         policies: Policies by agent, including people.
-        decided: Function that returns True when the outcome of the episode is certain.
+        decided: Function that returns True when the outcome of the episode is certain; nobody is
+            awaited then.
         mute: Agents whose programs may not speak.
 
     Returns:
         The part with its results and the tick at which it began.
     """
     part, (programs, past) = parts[-1], _programs(parts)
-    here = RealRound(nest, policies, ticks, decided, mute)
-    results = here.run(programs, past)
-    acted = here.acted
+    people = people_in(policies)
+    awaited = {
+        name for name, each in policies.items() if isinstance(each, Person) and each.is_awaited
+    }
+    # Events while policies were deciding belong to the time before the part.
+    nest["/"].step(0)
+    began = nest.tick
+
+    def acted() -> set[str]:
+        state = nest["/"].state
+        did = {e.actor for e in state.events if e.tick > began and e.kind.is_act}
+        return {*people} & (did | {speaker for tick, speaker, _ in state.chat if tick > began})
+
+    def is_over() -> bool:
+        return awaited <= acted() or decided() if awaited else nest.tick >= began + ticks
+
+    run = partial(nest["/"].run_all, senses="percepts", past=past, mute=mute)
+    results = run(programs, ticks) if programs else {}
+    until = nest.tick
+    most = ticks * (_LONGEST if awaited else 1)
+    nest.wait(is_over, max(0, began + most - until) / TICKS_PER_SECOND)
+    did = acted()
     ended = {
-        agent: Ended("", "ok") if agent in acted else ended_as(each, results.get(agent))
+        agent: Ended("", "ok") if agent in did else ended_as(each, results.get(agent))
         for agent, each in part.decisions.items()
     }
-    cut = cut_in(results, ended, past, here.began, here.cut)
-    return RoundPart(part.decisions, ended, cut, here.began, reasons_in(results))
+    cut = cut_in(results, ended, past, began, until)
+    return RoundPart(part.decisions, ended, cut, began, reasons_in(results))
 
 
 def look_around(nest: Nest) -> None:
