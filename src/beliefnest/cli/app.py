@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer import Argument, Option
 from typer.core import TyperGroup
 
 from beliefnest.cli.options import (
@@ -180,10 +181,7 @@ def _fail(message: str, status: int) -> int:
 @app.callback()
 def common(
     version: Annotated[
-        bool,
-        typer.Option(
-            "--version", help="Print the version.", callback=_print_version, is_eager=True
-        ),
+        bool, Option("--version", help="Print the version.", callback=_print_version, is_eager=True)
     ] = False,
 ) -> None:
     """Read the options that belong to no command."""
@@ -232,7 +230,7 @@ def serve(options: ServeOptions) -> None:
 
 @app.command(rich_help_panel=_READ)
 def branches(
-    run: Annotated[Path, typer.Argument(help="Run folder or run file.")], json: Json = False
+    run: Annotated[Path, Argument(help="Run folder or run file.")], json: Json = False
 ) -> None:
     """Show the branches of a recorded run, each below the branch it was forked from."""
     from beliefnest.cli.branches import show_branches
@@ -242,16 +240,14 @@ def branches(
 
 @app.command(rich_help_panel=_READ)
 def prompt(
-    run: Annotated[Path, typer.Argument(help="Run folder, or the folder of one condition in it.")],
-    path: Annotated[str, typer.Option(help="Belief path to render.")],
+    run: Annotated[Path, Argument(help="Run folder, or the folder of one condition in it.")],
+    path: Annotated[str, Option(help="Belief path to render.")],
     template: Annotated[
         Path | None,
-        typer.Option(
-            help="File, or name of a template of the run or a built-in one; default: paper."
-        ),
+        Option(help="File, or name of a template of the run or a built-in one; default: paper."),
     ] = None,
     var: Annotated[
-        list[str] | None, typer.Option(help="Variable as NAME=TEXT, such as task=TEXT; repeatable.")
+        list[str] | None, Option(help="Variable as NAME=TEXT, such as task=TEXT; repeatable.")
     ] = None,
 ) -> None:
     """Render a prompt template from a belief of a recorded run."""
@@ -263,7 +259,7 @@ def prompt(
 @app.command(rich_help_panel=_WRITE)
 def template(
     name: Annotated[
-        str | None, typer.Argument(help="Built-in template; without it, the names of all.")
+        str | None, Argument(help="Built-in template; without it, the names of all.")
     ] = None,
 ) -> None:
     """Print a built-in prompt template, to copy and change it."""
@@ -273,7 +269,7 @@ def template(
 
 
 @app.command(rich_help_panel=_WRITE)
-def new(name: Annotated[str, typer.Argument(help="Name of the scenario and of its file.")]) -> None:
+def new(name: Annotated[str, Argument(help="Name of the scenario and of its file.")]) -> None:
     """Write a commented scenario to start from."""
     from beliefnest.cli.new import write_starter
 
@@ -291,7 +287,7 @@ def capture(options: CaptureOptions) -> None:
 
 @app.command(rich_help_panel=_PLAY)
 def replay(
-    run: Annotated[Path, typer.Argument(help="Folder of a run or a study, or a run file.")],
+    run: Annotated[Path, Argument(help="Folder of a run or a study, or a run file.")],
     json: Json = False,
 ) -> int:
     """Run the recorded programs again; print the first tick and field that differ, if any."""
@@ -311,8 +307,8 @@ def export(options: ExportOptions) -> None:
 
 @app.command("import", rich_help_panel=_WRITE)
 def import_(
-    trace: Annotated[Path, typer.Argument(help="JSONL trace of another program.")],
-    out: Annotated[Path, typer.Option(help="Run file to write; it must not exist.")],
+    trace: Annotated[Path, Argument(help="JSONL trace of another program.")],
+    out: Annotated[Path, Option(help="Run file to write; it must not exist.")],
 ) -> None:
     """Make a run file from a trace, so that you can read beliefs from it."""
     from beliefnest.cli.exchange import import_run
@@ -414,13 +410,12 @@ def play(options: PlayOptions) -> int:
 
 @app.command(rich_help_panel=_WRITE)
 def bundle(
-    results: Annotated[Path, typer.Argument(help="Folder of a study or a run.")],
+    results: Annotated[Path, Argument(help="Folder of a study or a run.")],
     out: Annotated[
-        Path | None,
-        typer.Option("--out", "-o", help="ZIP file to write; default: the folder's name."),
+        Path | None, Option("--out", "-o", help="ZIP file to write; default: the folder's name.")
     ] = None,
     runs: Annotated[
-        bool, typer.Option("--runs", help="Include recorded run files, which are large.")
+        bool, Option("--runs", help="Include recorded run files, which are large.")
     ] = False,
 ) -> None:
     """Write a supplement: everything to read a study or run, and to reproduce it without models."""
@@ -431,7 +426,7 @@ def bundle(
 
 @app.command(rich_help_panel=_READ)
 def methods(
-    results: Annotated[Path, typer.Argument(help="Folder of a study or a run.")],
+    results: Annotated[Path, Argument(help="Folder of a study or a run.")],
     form: MethodsFormat = "markdown",
 ) -> None:
     """Print the paragraph for a methods section, from recorded facts."""
@@ -444,24 +439,20 @@ def methods(
 def reproduce(
     supplement: Annotated[
         Path | None,
-        typer.Argument(
+        Argument(
             help="Supplement (ZIP file or folder), or folder of a study or run, to play again "
             "without any model; default: the paper's experiments."
         ),
     ] = None,
     copies: Annotated[
         int | None,
-        typer.Option(
-            help="Mirrored, turned and renamed copies of each experiment; default: 4.", min=0
-        ),
+        Option(help="Mirrored, turned and renamed copies of each experiment; default: 4.", min=0),
     ] = None,
-    jobs: Annotated[int, typer.Option(help="Cells to play in parallel.", min=1)] = 1,
-    page: Annotated[
-        Path | None, typer.Option(help="Write the table to this Markdown file.")
-    ] = None,
+    jobs: Annotated[int, Option(help="Cells to play in parallel.", min=1)] = 1,
+    page: Annotated[Path | None, Option(help="Write the table to this Markdown file.")] = None,
     trust: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--trust",
             help="Run the Python code of a supplement's policies and judging functions. Without "
             "it the command lists this code and stops.",
@@ -484,10 +475,10 @@ def reproduce(
 @app.command(rich_help_panel=_HERE)
 def doctor(
     server: Annotated[
-        str | None, typer.Argument(help="Server to check as well, as minecraft://HOST:PORT.")
+        str | None, Argument(help="Server to check as well, as minecraft://HOST:PORT.")
     ] = None,
     warm: Annotated[
-        bool, typer.Option("--warm", help="Compile all kernels now, so that the first run is fast.")
+        bool, Option("--warm", help="Compile all kernels now, so that the first run is fast.")
     ] = False,
     json: Json = False,
 ) -> int:
@@ -500,11 +491,11 @@ def doctor(
 @app.command(rich_help_panel=_HERE)
 def bench(
     names: Annotated[
-        list[str] | None, typer.Argument(help="Names of benches; default: all except minecraft.")
+        list[str] | None, Argument(help="Names of benches; default: all except minecraft.")
     ] = None,
     curves: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             help="With growth: measure curves over the box, agents, depth, ticks and branches "
             "instead; write them into this folder as SVG and CSV."
         ),
