@@ -1,5 +1,5 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[ci]"`.
-.PHONY: help test quick hook faults rest nightly check size format schema notices picture notebooks pages baselines docs links bench ci
+.PHONY: help test quick hook faults rest nightly check size format schema outlines notices picture notebooks pages baselines docs links bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
@@ -46,6 +46,9 @@ format: ## Lay out the code
 
 schema: ## docs/scenario.schema.json from the types
 	python tools/scenario_schema.py
+
+outlines: ## Names and descriptions of the built-in scenarios, which `beliefnest list` reads
+	python tools/outlines.py
 
 notices: ## THIRD_PARTY_NOTICES.md from what is bundled
 	python tools/third_party_notices.py

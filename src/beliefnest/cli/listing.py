@@ -10,15 +10,14 @@ from beliefnest.episodes.tasks import task_names
 from beliefnest.importing import hidden_entries, installed_names, told_entry
 from beliefnest.llm.named_models import model_names
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
-from beliefnest.scenarios.outline import builtin_outline
-from beliefnest.scenarios.sources import builtin_names
+from beliefnest.scenarios.outline import builtin_outlines
 from beliefnest.suites import FILMS, suite_names
 from beliefnest.worlds.names import server_forms, world_names
 
 
 def print_installed(commands: Sequence[str], *, as_json: bool) -> None:
     """Print all names that commands accept, by kind; `commands` are the names of the commands."""
-    scenarios = [builtin_outline(name) for name in builtin_names()]
+    scenarios = builtin_outlines()
     content = {
         "scenarios": [
             {
