@@ -802,10 +802,24 @@ def test_long_answers_are_read_at_once() -> None:
         "<think>",
         "```\n",
         "\n",
+        "\\boxed{",
+        "Answer: A\n",
+        "Answer:\n",
+        "Question: where?\n",
+        "---\nhe is out\n",
     ):
         started = time.process_time()
         read_answer(part * (50_000 // len(part)), OPTIONS)
         assert time.process_time() - started < 5
+
+
+@pytest.mark.parametrize("gap", [" ", "\n", "\u00a0", " \n"])
+def test_a_gap_of_any_length_is_no_part_of_an_answer(gap: str) -> None:
+    started = time.process_time()
+    reading = read_answer(f"I see.{gap * 20_000}Answer:{gap * 20_000}the red box", OPTIONS)
+    assert reading.option == "red box"
+    assert read_words(f"Answer:{gap * 20_000}the red box").said == "the red box"
+    assert time.process_time() - started < 5
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,8 @@
 """Reader of answers: which option a model or a person named, or that it cannot be told."""
 
 import re
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -174,7 +175,8 @@ class _Reader:
         return answered or (set(), False, "")
 
     def _part(self, text: str) -> _Found:
-        parts = sorted([*statements(text), *self._alone(text)], key=lambda each: each.start)
+        marks = statements(text)
+        parts = sorted([*marks, *self._alone(text, marks)], key=lambda each: each.start)
         ruled_out: set[int] = set()
         for place in range(len(parts) - 1, -1, -1):
             each = parts[place]
@@ -199,23 +201,20 @@ class _Reader:
             return self._reconsidered(chosen, unclear, each, text)
         return self._prose(text)
 
-    def _alone(self, text: str) -> list[Statement]:
-        """Return the lines that hold nothing but an option."""
-        lone = []
+    def _alone(self, text: str, marks: Sequence[Statement]) -> Iterator[Statement]:
+        """Yield the lines that hold nothing but an option, and are no part of another statement."""
         at = 0
         kept = dict(bare_lines(text))
         for number, line in enumerate(text.split("\n")):
             start, at = at, at + len(line) + 1
             plain = kept.get(number, "")
+            end = start + len(line)
+            # A mark before such a line has it as its value already.
+            mark = bisect_left(marks, end, key=lambda each: each.end)
+            if mark < len(marks) and marks[mark].start <= start:
+                continue
             if plain and len(plain) < 300 and self._is_bare(plain):
-                lone.append(Statement(start, start + len(line), line, "line"))
-        # A mark before such a line has it as its value already.
-        marks = statements(text)
-        return [
-            each
-            for each in lone
-            if not any(m.start <= each.start and each.end <= m.end for m in marks)
-        ]
+                yield Statement(start, end, line, "line")
 
     def _is_bare(self, plain: str) -> bool:
         named = self._names.named(plain)

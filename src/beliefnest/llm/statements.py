@@ -3,6 +3,7 @@
 import ast
 import json
 import re
+from bisect import bisect_left
 from collections.abc import Iterator
 from typing import Any, Literal
 
@@ -51,7 +52,7 @@ _PROSE = re.compile(
     re.IGNORECASE,
 )
 _POST = re.compile(
-    r"(?P<rest>[^\n.!?;,]*?)\s+(?:is|must be|should be|=)\s+"
+    r"\s+(?:is|must be|should be|=)\s+"
     r"(?:(?:the|my)\s+(?:final |correct |right |best )*(?:answer|choice|option|one)"
     r"|correct|right)\b(?!\s+(?:box|chest|room|barrel))",
     re.IGNORECASE,
@@ -101,6 +102,9 @@ _KEYS = (
 )  # fmt: skip
 _INNER = ("answer", "option", "choice", "letter", "label", "text", "value", "name", "id", "key")
 _LONGEST_LINE = 2000
+_LONGEST_PARAGRAPH = 10_000
+_MOST_TURNS = 20
+_GAP = re.compile(r"\s{2,}")
 _AFTER = re.compile(
     r"(?:[.!?;>\n\u2014)-]\s*|\s-\s|,\s+(?=no,|no wait|wait))"
     r"(?P<sign>wait|hold on|no,|no\.|no wait|correction|scratch that|"
@@ -138,16 +142,18 @@ def statements(text: str) -> list[Statement]:
     candidates.sort(key=lambda each: (each.start, -each.end))
     kept: list[Statement] = []
     for each in candidates:
-        outer = next((k for k in kept if k.start <= each.start and each.end <= k.end), None)
-        if outer is None:
+        # None holds another one, so their ends are in order as well.
+        outer = bisect_left(kept, each.end, key=lambda k: k.end)
+        if outer == len(kept):
             kept.append(each)
-        elif each.alone and not outer.alone:
-            kept[kept.index(outer)] = each
+        elif each.alone and not kept[outer].alone:
+            kept[outer] = each
     return sorted(kept, key=lambda each: each.start)
 
 
 def _boxed(text: str) -> Iterator[Statement]:
-    for box in _BOXED.finditer(text):
+    at = 0
+    while box := _BOXED.search(text, at):
         depth, at = 0, box.end()
         while at < len(text):
             depth += (text[at] == "{") - (text[at] == "}")
@@ -250,8 +256,9 @@ def _lines(text: str) -> Iterator[Statement]:
         if re.search(r"\w", rest):
             yield Statement(start, start + len(line), rest)
             continue
-        following = text[at:].lstrip("\n \t")
-        skipped = len(text[at:]) - len(following)
+        behind = text[at : at + _LONGEST_PARAGRAPH]
+        following = behind.lstrip("\n \t")
+        skipped = len(behind) - len(following)
         following = re.sub(r"\A(?:`{3,}|~{3,})[^\n]*\n", "", following)
         paragraph = re.split(r"\n\s*\n|\n\s*(?:`{3,}|~{3,})", following, maxsplit=1)[0]
         paragraph = _until_reason(paragraph)
@@ -282,10 +289,14 @@ def _sentences(text: str) -> Iterator[Statement]:
                 if not (sentence.rstrip().endswith("?") or _CONDITION.search(whole)):
                     end = start + match.start("rest") + len(sentence)
                     yield Statement(start + match.start(), end, sentence, "prose")
+        clause = 0
         for match in _POST.finditer(short):
+            clause = max(clause, *(short.rfind(mark, 0, match.start()) + 1 for mark in ".!?;,"))
+            rest = short[clause : match.start()]
             whole = _last_sentence(short[: match.end()]) + _first_sentence(short[match.end() :])
             if not _CONDITION.search(whole):
-                yield Statement(start + match.start(), start + match.end(), match["rest"], "prose")
+                yield Statement(start + clause, start + match.end(), rest, "prose")
+            clause = match.end()
 
 
 def _last_sentence(text: str) -> str:
@@ -311,10 +322,11 @@ def afterthoughts(text: str) -> tuple[str, str] | None:
 
 
 def without_made_up_turns(text: str) -> list[str]:
-    """Split a text before each line that begins another question or task."""
+    """Split a text before each of the first lines that begin another question or task."""
     parts: list[list[str]] = [[]]
     for line in text.split("\n"):
-        if _MADE_UP.match(line) and any(each.strip() for each in parts[-1]):
+        is_turn = len(parts) <= _MOST_TURNS and _MADE_UP.match(line)
+        if is_turn and any(each.strip() for each in parts[-1]):
             parts.append([])
         parts[-1].append(line)
     return ["\n".join(each) for each in parts]
@@ -327,9 +339,14 @@ def given_reason(text: str) -> str:
 
 
 def unfenced(text: str) -> str:
-    """Return a text without the lines of fences, and without unchecked lines of a list."""
-    lines = _FENCE.sub("", text).split("\n")
+    """Return a text without lines of fences, unchecked lines of a list, and long gaps."""
+    # A model that repeats itself writes gaps of any length, on which patterns would take hours.
+    lines = _FENCE.sub("", _GAP.sub(_shorter, text)).split("\n")
     return "\n".join("" if _UNCHECKED.match(line) else line for line in lines)
+
+
+def _shorter(gap: re.Match[str]) -> str:
+    return "\n" * min(2, gap[0].count("\n")) or " "
 
 
 def bare_lines(text: str) -> list[tuple[int, str]]:
