@@ -1,5 +1,6 @@
 """Distribution of the tests, their surroundings, and profiles of the property tests."""
 
+import gc
 import os
 import signal
 import sys
@@ -64,6 +65,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         add_ci(item)
         add_quick(item)
     items.sort(key=lambda item: rank(item.nodeid))
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Leave what was collected out of searches for cycles, and search as rarely as commands do."""
+    gc.freeze()
+    gc.set_threshold(300_000)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

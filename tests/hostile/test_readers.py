@@ -277,26 +277,26 @@ def broken() -> bytes:
     return bytes(body)
 
 
-ZIPS = {
-    "a path upwards": entry("../out.txt"),
-    "an absolute path": entry("/tmp/out.txt"),
-    "a path of another system": entry("..\\out.txt"),
-    "a drive": entry("C:out.txt"),
-    "a symbolic link": entry("study.json", 0o120777),
-    "a file twice": zipped({"Study.json": b"", "study.json": b""}),
-    "a damaged file": broken(),
-    "much more than its size": entry("study.json", size=2**28 + 1),
-    "a long list of files": zipped({f"{number:065000}": b"" for number in range(130)}),
-    "half a file": zipped(SUPPLEMENT)[:80],
-    "no archive": gzip.compress(b"x"),
+ZIPS: dict[str, Callable[[], bytes]] = {
+    "a path upwards": lambda: entry("../out.txt"),
+    "an absolute path": lambda: entry("/tmp/out.txt"),
+    "a path of another system": lambda: entry("..\\out.txt"),
+    "a drive": lambda: entry("C:out.txt"),
+    "a symbolic link": lambda: entry("study.json", 0o120777),
+    "a file twice": lambda: zipped({"Study.json": b"", "study.json": b""}),
+    "a damaged file": broken,
+    "much more than its size": lambda: entry("study.json", size=2**28 + 1),
+    "a long list of files": lambda: zipped({f"{number:065000}": b"" for number in range(130)}),
+    "half a file": lambda: zipped(SUPPLEMENT)[:80],
+    "no archive": lambda: gzip.compress(b"x"),
 }
 
 
 @pytest.mark.parametrize("content", ZIPS.values(), ids=ZIPS)
-def test_a_supplement_that_is_none_is_refused(tmp_path, content):
+def test_a_supplement_that_is_none_is_refused(tmp_path: Path, content: Callable[[], bytes]) -> None:
     path = tmp_path / "inner" / "s.zip"
     path.parent.mkdir()
-    path.write_bytes(content)
+    path.write_bytes(content())
     with pytest.raises(BeliefNestError, match=r"s\.zip"):
         unpack(path, tmp_path / "inner" / "out")
     assert {each.name for each in tmp_path.iterdir()} == {"inner"}
@@ -326,7 +326,7 @@ PLACE = (
         [
             ("s.yaml", YAML["a text inserted 20,000 times"], ["run", "s.yaml", "--out", "o"]),
             ("t.jsonl", TRACE.replace(b"3.5", b"1e999"), ["import", "t.jsonl", "--out", "t.bn"]),
-            ("s.zip", ZIPS["a damaged file"], ["reproduce", "s.zip"]),
+            ("s.zip", broken(), ["reproduce", "s.zip"]),
             ("r.bn", b"SQLite format 3\0" + bytes(200), ["show", "r.bn"]),
             ("d.json", b"[" * 100_000, ["suite", "stories", "--data", "d.json"]),
             ("p.nbt", PLACE, ["capture", "p.nbt", "-o", "p.yaml"]),

@@ -347,17 +347,15 @@ class View:
 
     def __init__(self, rules: Rules, around: Node, me: str) -> None:
         self._box = rules.box
-        self._sight = rules.sight
         agent = around.agents[me]
         assert agent.position is not None
         x, y, z = agent.position
         self._looking = ((x, y + 1.62, z), agent.yaw, agent.pitch)
-        self._grid = np.full(self._box.shape, UNKNOWN, dtype=np.int32)
+        grid = np.full(self._box.shape, UNKNOWN, dtype=np.int32)
         for position, block in around.blocks.items():
-            self._grid[self._box.index(position)] = block.state
-        self._visible = self._sight.geometry(self._grid, self._box.low).visible_blocks(
-            *self._looking
-        )
+            grid[self._box.index(position)] = block.state
+        self._geometry = rules.sight.geometry(grid, self._box.low)
+        self._visible = self._geometry.visible_blocks(*self._looking)
         self.agents = {me} | {
             name
             for name, other in around.agents.items()
@@ -370,9 +368,7 @@ class View:
 
     def would_see(self, feet: Point) -> bool:
         """Return True if an agent that stood there would be seen."""
-        return bool(
-            self._sight.geometry(self._grid, self._box.low).sees_agents(*self._looking, [feet])[0]
-        )
+        return bool(self._geometry.sees_agents(*self._looking, [feet])[0])
 
 
 def aged(part: Any, last: int) -> Any:
