@@ -40,6 +40,8 @@ def fenced(code: str, language: str = "javascript") -> str:
         (f"Here it is:\n```javascript\nawait a();\n{DONE}```", f"await a();\n{DONE}"),
         (f"Program: ```js\n{DONE}\n```\n", DONE),
         (f"Program: ```js {DONE}```", DONE),
+        (f"\u7a0b\u5e8f\uff1a```js\n{DONE}\n```", DONE),
+        (f"> ```js\n> if (a) {{\n>   {DONE}\n>\n> }}\n> ```", f"if (a) {{\n  {DONE}\n\n}}"),
         (f"```js {DONE} ```", DONE),
         (f"Call ```a();``` like this:\n{fenced(DONE)}", DONE),
         (f"<think>maybe\n{fenced('draft();')}\nno</think>\n{fenced(DONE, '')}", DONE),

@@ -41,6 +41,7 @@ _CODE_TAG = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 _FENCE_LINE = re.compile(r"^[ \t>]*(?:`{3,}|~{3,})", re.MULTILINE)
+_QUOTE = re.compile(r"^[ \t]*> ?", re.MULTILINE)
 _NO_CODE = "###"
 """Text that is valid in a template literal only."""
 _MOST_BLOCKS = 100
@@ -181,6 +182,8 @@ def _blocks(text: str) -> Iterator[_Block]:
             continue
         end, at = _end_of_block(text, start, fence, language)
         code = text[start : at if end is None else end]
+        if text[: opening.start()].rsplit("\n", 1)[-1].strip() == ">":
+            code = _QUOTE.sub("", code)
         yield _Block(language, code.strip("\n"), closed=end is not None)
     if not has_fence:
         for tag in _CODE_TAG.finditer(text):
@@ -194,7 +197,7 @@ def _next_opening(text: str, at: int) -> re.Match[str] | None:
     for opening in _OPENING.finditer(text, at):
         line = text[text.rfind("\n", 0, opening.start()) + 1 : opening.start()]
         # Three backticks in the middle of a sentence are quoted code, not a block.
-        if not line.strip(" \t>*#.-0123456789") or line.rstrip().endswith((":", "-", "=", ">")):
+        if not line.strip(" \t>*#.-0123456789") or line.rstrip().endswith((":", "\uff1a", "-", "=", ">")):
             return opening
     return None
 
