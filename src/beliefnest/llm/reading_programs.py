@@ -41,6 +41,8 @@ _CODE_TAG = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 _FENCE_LINE = re.compile(r"^[ \t>]*(?:`{3,}|~{3,})", re.MULTILINE)
+_ANNOUNCING = (":", "\uff1a", "-", "=", ">")
+"""Ends of lines that announce a block."""
 _QUOTE = re.compile(r"^[ \t]*> ?", re.MULTILINE)
 _NO_CODE = "###"
 """Text that is valid in a template literal only."""
@@ -197,7 +199,7 @@ def _next_opening(text: str, at: int) -> re.Match[str] | None:
     for opening in _OPENING.finditer(text, at):
         line = text[text.rfind("\n", 0, opening.start()) + 1 : opening.start()]
         # Three backticks in the middle of a sentence are quoted code, not a block.
-        if not line.strip(" \t>*#.-0123456789") or line.rstrip().endswith((":", "\uff1a", "-", "=", ">")):
+        if not line.strip(" \t>*#.-0123456789") or line.rstrip().endswith(_ANNOUNCING):
             return opening
     return None
 
