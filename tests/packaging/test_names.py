@@ -70,11 +70,12 @@ def named_by_participles():
     """Yield where variables and parameters are named by participles that say nothing of a value."""
     participles = {"found", "told", "held", "known", "given"}
     for module, tree in trees().items():
-        classes = (part.body for part in ast.walk(tree) if isinstance(part, ast.ClassDef))
+        nodes = list(ast.walk(tree))
+        classes = (part.body for part in nodes if isinstance(part, ast.ClassDef))
         fields = {
             each.target for body in classes for each in body if isinstance(each, ast.AnnAssign)
         }
-        for node in ast.walk(tree):
+        for node in nodes:
             match node:
                 case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name) if (
                     name in participles and node not in fields

@@ -30,7 +30,9 @@ def test_only_the_plan_plays_cells():
     callers = defaultdict(set)
     for module in SOURCES.rglob("*.py"):
         if "node_modules" not in module.parts:
-            for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+            text = module.read_text(encoding="utf-8")
+            # Parsing all modules takes seconds.
+            for node in ast.walk(ast.parse(text)) if any(name in text for name in PLAYERS) else ():
                 match node:
                     case ast.Call(func=ast.Name(id=name)) if name in PLAYERS:
                         callers[name].add(module.relative_to(SOURCES).as_posix())
