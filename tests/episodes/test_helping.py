@@ -210,7 +210,7 @@ def test_of_a_goal_that_nobody_came_near_all_who_are_after_it_needed_help() -> N
 
 def test_a_share_that_came_true_after_the_deadline_never_did() -> None:
     facts = conditions_of(FactEntry(agent="ann", items={"apple": 1}), ("ann",))
-    early, late = (Progress.begun(Goal(tuple(facts), ticks=9), 0) for _ in range(2))
+    early, late = (Progress(Goal(tuple(facts), ticks=9), 0) for _ in range(2))
     early.feed(9, [True], 0)
     late.feed(10, [True], 0)
     assert [Share((0,), ()).done_at(each) for each in (early, late)] == [9, float("inf")]

@@ -38,7 +38,7 @@ def every_tick(episode: bn.Episode) -> dict[str, Progress]:
     """Progress of all goals, tested after each entry."""
     nest, task = episode.nest, episode.task
     goals = {"": task.goal, **{agent: task.goal_of(agent) for agent in task.agents}}
-    progress = {name: Progress.begun(goal, episode.start) for name, goal in goals.items()}
+    progress = {name: Progress(goal, episode.start) for name, goal in goals.items()}
     paths = sorted({(), *(path for goal in goals.values() for path in goal.paths)})
     for entry, states in nest.each_entry(paths, episode.start - 1, nest.tick):
         facts = {path: StateFacts(state) for path, state in states().items()}

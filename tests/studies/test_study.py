@@ -412,7 +412,7 @@ def test_a_line_that_was_cut_off_spoils_no_other(tmp_path):
     folder = StudyFolder.open(tmp_path / "out", SCENARIO_KIND)
     for file in (folder.ledger, folder.path / "seconds.jsonl"):
         file.write_text('{"cell": "on', "utf-8")
-    SharedBudget.of(RunLimits(), folder.ledger).add(Usage(1, 10, 5, 0.5))
+    SharedBudget(RunLimits(), file=folder.ledger).add(Usage(1, 10, 5, 0.5))
     folder.note_seconds("one", 1.5)
     assert spent_in(folder.ledger) == Usage(1, 10, 5, 0.5)
     assert folder.seconds() == {"one": 1.5}

@@ -21,10 +21,11 @@ from beliefnest.studies.accuracy_figure import plot_accuracy
 from beliefnest.studies.study import Study
 from beliefnest.version import VERSION
 
-_POLICIES, _ORDERS = ("random", "search", "omniscient:search"), (0, 1, 2)
-"""Policies and orders of the players; all other agents follow the task's script."""
-_HIDDEN_POLICIES, _HIDDEN_ORDERS = ("random", "search", "infer", "omniscient:search"), (0, 1)
-"""Policies and orders of the players in tasks with hidden goals."""
+_POLICIES_OF: Mapping[bool, tuple[tuple[str, ...], tuple[int, ...]]] = {
+    True: (("random", "search", "omniscient:search"), (0, 1, 2)),
+    False: (("random", "search", "infer", "omniscient:search"), (0, 1)),
+}
+"""Policies and orders of the players, by whether goals are known; all others follow the script."""
 _BY = ("task", "needs", "policy")
 _TRAINED, _TRAINING = 10_000, 6
 """First instance on which linear rules are tried, apart from those of the table; their number."""
@@ -107,8 +108,7 @@ def run_baselines(options: PlayOptions) -> int:
 def _played(name: str, options: PlayOptions) -> PlayedTask:
     task, last = Task.load(name), _TRAINED + min(_TRAINING, options.seeds)
     trained = trained_rule(partial(Task.load, name), range(_TRAINED, last))
-    known = task.form.goals_known
-    policies, orders = (_POLICIES, _ORDERS) if known else (_HIDDEN_POLICIES, _HIDDEN_ORDERS)
+    policies, orders = _POLICIES_OF[task.form.goals_known]
     rules = {policy_of(rule): rule for rule in (*rules_of(task), trained)}
     study = Study(tasks=[name], policies=(*policies, *rules), orders=orders, seeds=options.seeds)
     groups = _summary(study, options, task.name)

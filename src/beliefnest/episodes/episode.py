@@ -1,7 +1,7 @@
 """Episodes: play a task round after round; record, resume, replay and branch it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -37,7 +37,6 @@ from beliefnest.episodes.record import (
     kept_in,
     played_last,
 )
-from beliefnest.episodes.round_start import RoundStart
 from beliefnest.episodes.rounds import Asker, replayed, slots_of
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.watching import Watch
@@ -447,7 +446,7 @@ class Episode:
         if fault is not None:
             raise ModelError(f"{fault}; raise the limit of the episode to go on")
 
-    def at(self, round: int) -> "RoundStart[Self]":
+    def at(self, round: int) -> "RoundStart":
         """Return the beginning of a played round.
 
         Raises:
@@ -565,6 +564,31 @@ class Episode:
     def _watch(self) -> Progress:
         """Return the progress of the task's goal."""
         return self._watching.up_to_now(self.nest)[""]
+
+
+@dataclass(frozen=True, slots=True)
+class RoundStart:
+    """Beginning of a round of an episode, from which it can be branched.
+
+    Attributes:
+        episode: The episode.
+        round: Number of the round, from 0.
+    """
+
+    episode: Episode
+    round: int
+
+    def fork(self, **policies: "str | Policy") -> Episode:
+        """Return the episode from here on, on a new branch with other policies.
+
+        Args:
+            policies: New policies by agent; other agents keep their policies.
+
+        Raises:
+            InputError: A policy is for an unknown agent.
+            UnknownNameError: A policy does not exist.
+        """
+        return self.episode.forked(self.round, policies)
 
 
 def play_through(

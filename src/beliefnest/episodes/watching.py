@@ -35,7 +35,7 @@ class Watch:
         self._distinct: list[Progress] = []
         for goal in goals.values():
             if all(each.goal != goal for each in self._distinct):
-                self._distinct.append(Progress.begun(goal, start))
+                self._distinct.append(Progress(goal, start))
         self.progress: Mapping[str, Progress] = {
             name: next(each for each in self._distinct if each.goal == goal)
             for name, goal in goals.items()

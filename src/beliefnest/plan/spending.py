@@ -8,7 +8,7 @@ from pathlib import Path
 
 from filelock import FileLock
 
-from beliefnest.llm.budget import RunLimits, RunSpending, tokens_of_free
+from beliefnest.llm.budget import RunSpending, tokens_of_free
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.record_forms import UsageForm, read_lines
 
@@ -36,11 +36,6 @@ class SharedBudget(RunSpending):
         """Count the usage of an answer."""
         with FileLock(f"{self.file}.lock"):
             append_line(self.file, json.dumps(asdict(usage)))
-
-    @classmethod
-    def of(cls, limits: RunLimits, file: Path) -> "SharedBudget":
-        """Return the budget of a plan whose answers are counted in a file."""
-        return cls(limits=limits, file=file)
 
 
 def spent_in(file: Path) -> Usage:

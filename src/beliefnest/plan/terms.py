@@ -51,7 +51,7 @@ class Terms(msgspec.Struct, frozen=True):
             answer_limits: Limits on one answer; None: the default ones.
         """
         return Connection(
-            budget=SharedBudget.of(self.limits, self.ledger),
+            budget=SharedBudget(self.limits, file=self.ledger),
             answer_limits=answer_limits or AnswerLimits(),
             cache=self.answers,
             cache_mode=self.cache_mode,

@@ -1,7 +1,7 @@
 """Goals: conditions on reality and on beliefs, and the ticks at which they came true."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import msgspec
 
@@ -83,15 +83,10 @@ class Progress:
 
     goal: Goal
     start: int
-    first: dict[int, int]
+    first: dict[int, int] = field(default_factory=dict)
     reached: int | None = None
     violated: int | None = None
     messages: int = 0
-
-    @classmethod
-    def begun(cls, goal: Goal, start: int) -> "Progress":
-        """Return the progress of a goal at its start."""
-        return cls(goal, start, {})
 
     def feed(self, tick: int, are_met: Sequence[bool], messages: int) -> None:
         """Update the progress with a tick; after a violation, update `first` only.

@@ -166,53 +166,21 @@ class Planner:
         self.tried = 0
         self.guesses = {} if guesses is None else guesses
 
-    def plan(
-        self,
-        mind: Imagination,
-        agent: str,
-        order: int,
-        ticks: int,
-        bounds: SearchBounds,
-        before: Sequence[Call] | None = None,
-        *,
-        idle: bool = False,
-        avoided: Collection[str] = (),
-    ) -> FoundPlan:
-        """Return the best plan found; of equal plans, the first and shortest.
+    def planning(self, agent: str, order: int, ticks: int, bounds: SearchBounds) -> "Planning":
+        """Return a run of the search.
 
         Args:
-            mind: Belief of the agent; it is not changed.
             agent: Name of the planning agent.
             order: Order of Theory of Mind of the agent.
             ticks: Number of ticks left.
             bounds: Bounds of the search.
-            before: Calls of another course that the agent has begun, which it goes on with for a
-                round first; None: the plan begins at once.
-            idle: True if the others do nothing until they perceive something new.
-            avoided: Programs of calls that the plan does not begin with.
         """
-        planning = self._planning(agent, order, ticks, bounds)
-        return planning.best(mind, before, idle=idle, avoided=avoided)
-
-    def outcome(
-        self,
-        mind: Imagination,
-        agent: str,
-        order: int,
-        ticks: int,
-        bounds: SearchBounds,
-        calls: Sequence[Call],
-    ) -> CourseScore:
-        """Return how good a course of an agent is; other arguments as for `plan`."""
-        return self._planning(agent, order, ticks, bounds).outcome(mind, calls)
-
-    def _planning(self, agent: str, order: int, ticks: int, bounds: SearchBounds) -> "_Planning":
         horizon = min(ticks, bounds.horizon)
-        return _Planning(self, self._brief, agent, order, horizon, bounds)
+        return Planning(self, self._brief, agent, order, horizon, bounds)
 
 
-class _Planning:
-    """One run of the search."""
+class Planning:
+    """One run of the search, see `Planner.planning`."""
 
     def __init__(
         self,
@@ -243,6 +211,15 @@ class _Planning:
         idle: bool = False,
         avoided: Collection[str] = (),
     ) -> FoundPlan:
+        """Return the best plan found; of equal plans, the first and shortest.
+
+        Args:
+            mind: Belief of the agent; it is not changed.
+            before: Calls of another course that the agent has begun, which it goes on with for a
+                round first; None: the plan begins at once.
+            idle: True if the others do nothing until they perceive something new.
+            avoided: Programs of calls that the plan does not begin with.
+        """
         self._avoided = avoided
         mind, first = self._begun(mind, idle=idle)
         if before is not None:
@@ -332,7 +309,7 @@ class _Planning:
         key = (other, order, left, self._bounds, seen, spoken)
         if seen is None or key not in guesses:
             below = mind.below(other, order)
-            plan = self._planner.plan(below, other, order, left, self._bounds.lower())
+            plan = self._planner.planning(other, order, left, self._bounds.lower()).best(below)
             guesses[key] = plan.calls
         return guesses[key]
 

@@ -22,6 +22,7 @@ from beliefnest.episodes.policies.course_planner import (
     VIOLATED,
     CourseScore,
     Planner,
+    Planning,
     SearchBounds,
 )
 from beliefnest.skills.calls import Call, program_of
@@ -104,37 +105,24 @@ class Expecting:
             for each in minds:
                 yield _Supposition(share / total / len(minds), planner, supposed, each)
 
-    def _ticks(self, each: _Supposition) -> int:
+    def _planning(self, each: _Supposition) -> Planning:
+        agent = self._view.agent
         # Imagined is a scripted world, in which a block on foot takes one tick.
-        left = self._view.ticks_left_for(each.brief.goals[self._view.agent])
-        return left // each.brief.pace
+        ticks = self._view.ticks_left_for(each.brief.goals[agent]) // each.brief.pace
+        return each.planner.planning(agent, self._order, ticks, self._bounds)
 
     def _course(self, each: _Supposition) -> tuple[Call, ...]:
-        agent, ticks = self._view.agent, self._ticks(each)
-        return each.planner.plan(each.mind, agent, self._order, ticks, self._bounds).calls
+        return self._planning(each).best(each.mind).calls
 
     def _expected(self, supposed: Sequence[_Supposition], calls: tuple[Call, ...]) -> CourseScore:
-        agent = self._view.agent
-        return _mean(
-            (each.weight, self._judged(each, calls, score))
-            for each in supposed
-            for score in [
-                each.planner.outcome(
-                    each.mind, agent, self._order, self._ticks(each), self._bounds, calls
-                )
-            ]
-        )
+        scores = ((each, self._planning(each).outcome(each.mind, calls)) for each in supposed)
+        return _mean((each.weight, self._judged(each, calls, score)) for each, score in scores)
 
     def _learning(self, supposed: Sequence[_Supposition], calls: tuple[Call, ...]) -> CourseScore:
-        agent = self._view.agent
+        plans = ((each, self._planning(each).best(each.mind, calls)) for each in supposed)
         return _mean(
             (each.weight, self._judged(each, (*calls, *plan.calls), plan.score))
-            for each in supposed
-            for plan in [
-                each.planner.plan(
-                    each.mind, agent, self._order, self._ticks(each), self._bounds, calls
-                )
-            ]
+            for each, plan in plans
         )
 
     def _judged(self, each: _Supposition, calls: Sequence[Call], score: CourseScore) -> CourseScore:

@@ -44,11 +44,12 @@ class Search(msgspec.Struct, frozen=True):
         planner = Planner(view.brief, view.spoken, view.memo)
         # The search imagines a scripted world, in which a block on foot takes one tick.
         ticks = view.ticks_left // view.brief.pace
+        search = view.agent, self.order, ticks, self.bounds
         # What has just failed in the same way would fail again.
         avoided = view.last.program.splitlines()[:1] if view.last.how in _FAILED else ()
-        plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds, avoided=avoided)
+        plan = planner.planning(*search).best(mind, avoided=avoided)
         if not plan.calls and self.order and _has_waited_in_vain(view):
-            plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds, idle=True)
+            plan = planner.planning(*search).best(mind, idle=True)
         view.note_considered(_trace(plan, planner.tried))
         return program_of(plan.calls)
 

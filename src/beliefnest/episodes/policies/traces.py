@@ -138,7 +138,7 @@ def _course(
     performers = {}
     for name in sorted(supposed):
         mind = start.below(name, order - 1) if order else start
-        plan = planner.plan(mind, name, max(0, order - 1), ticks, bounds.lower())
+        plan = planner.planning(name, max(0, order - 1), ticks, bounds.lower()).best(mind)
         performers[name] = Performer(plan.calls)
     mind, course = start.fork(), [_moment(start, start.tick)]
 
