@@ -76,10 +76,10 @@ def about_run(journal: Journal, nest: RecordedNest, paths: Sequence[str] = ()) -
     named = [probe.path for probe in scenario.probes]
     named += [each.simulator for each in scenario.expectations]
     wanted = [parse_path(path, nest.agents) for path in (*paths, *named)]
-    number = "" if scenario.condition is None else f"condition {scenario.condition}: "
+    number = "" if scenario.condition is None else f"condition {scenario.condition}"
     return About(
         title=scenario.name,
-        subtitle=f"{number}{scenario.condition_description}".removesuffix(": "),
+        subtitle=": ".join(filter(None, (number, scenario.condition_description))),
         description=scenario.description,
         labels=scenario.labels,
         paths=tuple(dict.fromkeys(path for path in wanted if path)),

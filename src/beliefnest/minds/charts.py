@@ -164,7 +164,7 @@ def _notes(inference: Posterior) -> list[NotedAct]:
         (max(bits.values()), change)
         for change in inference.explain()
         if change.is_action
-        and (bits := {k: v for k, v in change.bits.items() if not k.startswith("actual.")})
+        and (bits := {k: v for k, v in change.bits.items() if inference.parts[k][0] != "actual"})
     ]
     most = sorted((each for each in acts if each[0] >= _LEAST_BITS), key=lambda each: -each[0])
     changes = sorted((change for _, change in most[:_MOST_NOTES]), key=lambda each: each.tick)

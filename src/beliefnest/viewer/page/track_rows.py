@@ -53,15 +53,16 @@ class TrackRows:
         for part in ("agents", "holds", "owns"):
             lists |= {f"{part} {n}": rows for n, rows in enumerate(getattr(track, part))}
         lists |= {f"contents {cell}": rows for cell, rows in track.contents.items()}
+        agents = {f"agents {n}" for n in range(len(track.agents))}
         for name, rows in lists.items():
             fresh = self._sent.fresh(name, rows)
             if fresh is not None:
-                update[name] = [fresh[0], [_told(name, row) for row in fresh[1]]]
+                update[name] = [fresh[0], [*map(_told, fresh[1])] if name in agents else fresh[1]]
         return update
 
 
-def _told(name: str, row: Any) -> Any:
-    if name.startswith("agents") and row[1] == PLACED:
+def _told(row: Any) -> Any:
+    if row[1] == PLACED:
         tick, code, seen, pose, *more = row
         return [tick, code, seen, _rounded(pose), *more]
     return row
