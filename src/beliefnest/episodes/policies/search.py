@@ -20,8 +20,6 @@ from beliefnest.skills.calls import program_of
 
 _MOST_COURSES = 10
 _OUTCOMES: Mapping[float, CourseOutcome] = {REACHED: "reached", OPEN: "open", VIOLATED: "violated"}
-_FAILED = ("failed", "no_way")
-"""Ends of programs after which their first call is not repeated at once."""
 
 
 class Search(msgspec.Struct, frozen=True):
@@ -46,7 +44,7 @@ class Search(msgspec.Struct, frozen=True):
         ticks = view.ticks_left // view.brief.pace
         search = view.agent, self.order, ticks, self.bounds
         # What has just failed in the same way would fail again.
-        avoided = view.last.program.splitlines()[:1] if view.last.how in _FAILED else ()
+        avoided = view.last.program.splitlines()[:1] if view.last.has_failed else ()
         plan = planner.planning(*search).best(mind, avoided=avoided)
         if not plan.calls and self.order and _has_waited_in_vain(view):
             plan = planner.planning(*search).best(mind, idle=True)
