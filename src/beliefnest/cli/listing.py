@@ -1,6 +1,8 @@
 """`beliefnest list`: names of installed scenarios, tasks, suites, templates and the like."""
 
+import json
 from collections.abc import Iterator, Sequence
+from importlib.resources import files
 
 from rich.text import Text
 
@@ -10,23 +12,16 @@ from beliefnest.episodes.tasks import task_names
 from beliefnest.importing import hidden_entries, installed_names, told_entry
 from beliefnest.llm.named_models import model_names
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
-from beliefnest.scenarios.outline import builtin_outlines
 from beliefnest.suites import FILMS, suite_names
 from beliefnest.worlds.names import server_forms, world_names
 
 
 def print_installed(commands: Sequence[str], *, as_json: bool) -> None:
     """Print all names that commands accept, by kind; `commands` are the names of the commands."""
-    scenarios = builtin_outlines()
+    # Written by `make outlines`: reading the scenarios themselves took half the time of `list`.
+    scenarios = json.loads((files("beliefnest.scenarios") / "outlines.json").read_bytes())
     content = {
-        "scenarios": [
-            {
-                "name": scenario.name,
-                "description": scenario.description,
-                "conditions": {str(n): text for n, text in scenario.conditions.items()},
-            }
-            for scenario in scenarios
-        ],
+        "scenarios": scenarios,
         "tasks": list(task_names()),
         "suites": list(suite_names()),
         "templates": list(BUILT_IN_TEMPLATES),
@@ -36,9 +31,9 @@ def print_installed(commands: Sequence[str], *, as_json: bool) -> None:
     }
     table = result_table("scenario", "condition", "about", right=("condition",))
     for scenario in scenarios:
-        table.add_row(scenario.name, "", scenario.description)
-        for number, text in scenario.conditions.items():
-            table.add_row("", str(number), text)
+        table.add_row(scenario["name"], "", scenario["description"])
+        for number, text in scenario["conditions"].items():
+            table.add_row("", number, text)
     further = {
         "tasks": task_names(),
         "suites": suite_names(),
