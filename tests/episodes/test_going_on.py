@@ -10,6 +10,8 @@ from tests.shared_worlds import WORLDS
 import beliefnest as bn
 from beliefnest.episodes.policies import Program, Scripted
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 ERRAND = """
 await say(bot, 'I begin.')
 await waitTicks(bot, 15)

@@ -10,6 +10,8 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.policies import Scripted
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 UTTERANCES = {
     "say": "await say(bot, 'hello')",
     "whisper": "await whisper(bot, 'bob', 'hello')",

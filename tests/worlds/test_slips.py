@@ -7,6 +7,8 @@ from tests.shared_worlds import WORLDS
 
 import beliefnest as bn
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 ROOM: dict[str, Any] = {
     "name": "room",
     "box": [[0, 0, 0], [9, 3, 6]],

@@ -19,6 +19,8 @@ from beliefnest.timeline.store import Journal
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.values import Position
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 LEFT, RIGHT, DOOR = (3, 0, 3), (17, 0, 3), (10, 0, 18)
 INFORMED = bn.Perception(max_visible_distance=6, testimony="informed", grace=100)
 

@@ -17,6 +17,8 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box
 from beliefnest.worlds.by_name import Worlds
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 REGISTRY = Registry.load()
 SHUT = "oak_door[facing=north,half={half},hinge=left,open=false,powered=false]"
 DOOR = (4, 1, 4)

@@ -14,6 +14,8 @@ from beliefnest.studies.items.record import ItemRecord, item_id
 from beliefnest.studies.items.results import PublishedSet
 from beliefnest.world.words import counted
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 MODEL = """
 from beliefnest.llm.messages import Answer
 
