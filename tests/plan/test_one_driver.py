@@ -15,7 +15,7 @@ PLAYERS = {
     "ProcessPoolExecutor": {"plan/processes.py"},
     "Parallel": {"plan/jobs.py"},
     # One ledger, beside the times of cells.
-    "SharedBudget": set(),
+    "SharedBudget": {"plan/terms.py"},
     "append_line": {"plan/spending.py", "studies/study_folder.py"},
     # Commands that play many: a run, a study, both played again, a suite, certificates.
     "run_cells": {
