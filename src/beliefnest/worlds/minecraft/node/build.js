@@ -20,7 +20,7 @@ const { interpreterNames } = require('./bundling/interpreter')
 const { bundledDesk } = require('./bundling/desk')
 const { deskState, guestState } = require('./bundling/states')
 const { SKILLS } = require('../../../skills/code')
-const { INTERPRETER, replacements } = require('./bundling/replacements')
+const { INTERPRETER, STATES, replacements } = require('./bundling/replacements')
 const { FURTHER, writeVersions } = require('./bundling/versions')
 
 const SOURCE = path.join(__dirname, 'src')
@@ -42,13 +42,13 @@ async function build (outdir) {
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
   const desk = await bundledDesk(path.join(SOURCE, 'sandbox', 'desk.js'))
   Object.assign(inputs, desk.inputs)
-  fs.writeFileSync(path.join(outdir, 'sandbox.msgpack.gz'), zlib.gzipSync(encode(await sandbox(desk.code))))
+  fs.writeFileSync(path.join(outdir, STATES), zlib.gzipSync(encode(await sandbox(desk.code))))
   const folders = packageFolders(inputs)
   fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packageList(folders), null, 1)}\n`)
   fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))
 }
 
-/** Return what the scripted world, which is written in Python, needs of the sandbox. @returns {Promise<object>} */
+/** Return the states in which programs begin, and what else the scripted world needs of the sandbox. @returns {Promise<object>} */
 async function sandbox (desk) {
   const { itemsArray, blocksArray } = require('minecraft-data')(MINECRAFT_VERSION)
   const registry = { items: itemsArray.map(({ name }) => name), blocks: Object.fromEntries(blocksArray.map(({ name, states }) => [name, states])) }
@@ -61,7 +61,7 @@ async function sandbox (desk) {
     limits: { ...DEFAULTS, ...LIMITS },
     meter: { ...METER, initialPages: INITIAL_PAGES },
     cost: REQUEST_COST,
-    guest: await guestState(scope),
+    guest: { ...await guestState(scope), scope: JSON.stringify(scope) },
     desk: await deskState(desk, registry)
   }
 }

@@ -13,8 +13,9 @@ const DATA = path.join(ROOT, 'node_modules', 'minecraft-data', 'minecraft-data',
 // Larger files are not inlined; the program reads them on first use.
 const INLINE_BYTES = 20000
 
-// File name under which build.js writes the interpreter of agent programs.
+// File names under which build.js writes the interpreter of agent programs, and the states in which they begin.
 const INTERPRETER = 'quickjs.wasm'
+const STATES = 'sandbox.msgpack.gz'
 
 // Data of connections and commands. Bots that join in memory do not even need a protocol.
 const UNUSED = ['commands']
@@ -66,6 +67,13 @@ const STAND_INS = [
   [/sandbox\/interpreter\.js$/, `module.exports = {
     ...${JSON.stringify(interpreterLimits)},
     interpreterBytes: () => require('node:fs').readFileSync(require('node:path').join(__dirname, '${INTERPRETER}'))
+  }`],
+  [/sandbox\/beginning\.js$/, `module.exports = {
+    readyMade () {
+      const packed = require('node:fs').readFileSync(require('node:path').join(__dirname, '${STATES}'))
+      const { pieces, runtime, context, functions, scope } = require('@msgpack/msgpack').decode(require('node:zlib').gunzipSync(packed)).guest
+      return { scope, functions, state: { pages: pieces.map(([place, bytes]) => ({ place, bytes })), runtime, context } }
+    }
   }`],
   // The protocol definitions come from packages and are correct; validating them costs a tenth of the start.
   [/protodef-validator\/index\.js$/, `module.exports = class {
@@ -164,4 +172,4 @@ function memoise (build) {
     : { errors: [{ text: `not in the bundle, or not where expected: ${[...missing].join(', ')}` }] })
 }
 
-module.exports = { INTERPRETER, replacements }
+module.exports = { INTERPRETER, STATES, replacements }

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * States of interpreters in which agent programs of the scripted world begin, made once here: that of a program with
- * nothing but its scope (the same as in Node), and that of the desk (src/sandbox/desk.js).
+ * States of interpreters in which agent programs begin, made once here: that of a program with nothing but its scope,
+ * for both worlds, and that of the desk of the scripted world (src/sandbox/desk.js).
  */
 const { Engine, METER } = require('../src/sandbox/engine')
 const { Memories } = require('../src/sandbox/memories')

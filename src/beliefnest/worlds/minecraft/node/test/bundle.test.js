@@ -5,7 +5,10 @@ const fs = require('node:fs')
 const os = require('node:os')
 const path = require('node:path')
 const { after, before, describe, it } = require('node:test')
+const { gunzipSync } = require('node:zlib')
+const { decode } = require('@msgpack/msgpack')
 const { Node, region } = require('./harness')
+const { scopeOf } = require('../src/scope')
 
 const BUILD = path.join(__dirname, '..', 'build.js')
 const LIMIT_BYTES = 12e6
@@ -48,6 +51,13 @@ describe('the bundle', () => {
     }
     assert.ok(frames[0].length > 10)
     assert.deepEqual(frames[0], frames[1])
+  })
+
+  it('has the state ready in which programs of bots begin', () => {
+    const { guest } = decode(gunzipSync(fs.readFileSync(path.join(folder, 'sandbox.msgpack.gz'))))
+    const { Vec3, goals, mcData, ...skills } = scopeOf({ registry: {} }, () => {})
+    const scope = JSON.parse(guest.scope)
+    assert.deepEqual([scope.skills, scope.data], [Object.keys(skills), mcData !== undefined])
   })
 
   it('is small, and names what it is made of', () => {

@@ -6,6 +6,7 @@
  */
 
 const { QuickJS, GuestException } = require('./quickjs')
+const { readyMade } = require('./beginning')
 const { STACK_BYTES, interpreterBytes } = require('./interpreter')
 const { Memories } = require('./memories')
 const { guestSource } = require('./guest/source')
@@ -100,13 +101,18 @@ class Engine {
   }
 
   /**
-   * Return the initial state of all programs of a scope; it is made on first use.
+   * Return the initial state of all programs of a scope; it is read or made on first use.
    * @param {Scope} scope
    */
   templateOf (scope) {
     const text = JSON.stringify(scope)
-    if (!this.templates.has(text)) this.templates.set(text, this.makeTemplate(text))
+    if (!this.templates.has(text)) this.templates.set(text, this.template(text))
     return this.templates.get(text)
+  }
+
+  async template (scopeText) {
+    const template = readyMade()
+    return template?.scope === scopeText ? template : this.makeTemplate(scopeText)
   }
 
   // Make a fresh context, load the guest's side of the border (guest/border.js) and the scope, and save its state.
