@@ -20,7 +20,8 @@ StateAt = Callable[[Position], int]
 T = TypeVar("T")
 _NOTHING = object()
 
-_CHESTS = ("chest", "trapped_chest")
+CHESTS = ("chest", "trapped_chest")
+"""Containers that can be double, and have lids."""
 _TYPES = {"left": "right", "right": "left"}
 _TO_RIGHT = {"north": (1, 0, 0), "east": (0, 0, 1), "south": (-1, 0, 0), "west": (0, 0, -1)}
 """Step from a left half to its right half, by the direction that both face."""
@@ -34,7 +35,7 @@ def holds_items(registry: Registry, state: int) -> bool:
 
 def is_left_half(registry: Registry, state: int) -> bool:
     """Return True for the left half of a double chest."""
-    return registry.name(state) in _CHESTS and registry.properties(state)["type"] == "left"
+    return registry.name(state) in CHESTS and registry.properties(state)["type"] == "left"
 
 
 def other_half(registry: Registry, state: int, place: Position) -> tuple[Position, int] | None:
@@ -47,7 +48,7 @@ def other_half(registry: Registry, state: int, place: Position) -> tuple[Positio
 
 @cache
 def _other_half(registry: Registry, state: int) -> tuple[Position, int] | None:
-    if state < 0 or registry.name(state) not in _CHESTS:
+    if state < 0 or registry.name(state) not in CHESTS:
         return None
     properties = registry.properties(state)
     if (kind := properties["type"]) not in _TYPES:
@@ -73,13 +74,18 @@ def is_double(registry: Registry, state_at: StateAt, place: Position) -> bool:
     )
 
 
-def container_at(registry: Registry, state_at: StateAt, place: Position) -> Position:
-    """Return the position of the container to which a block belongs: that of its right half."""
+def halves_at(registry: Registry, state_at: StateAt, place: Position) -> tuple[Position, ...]:
+    """Return the positions of the container to which a block belongs: its right half first."""
     if not is_double(registry, state_at, place):
-        return place
+        return (place,)
     other = other_half(registry, state_at(place), place)
     assert other is not None  # it is double
-    return other[0] if registry.properties(state_at(place))["type"] == "left" else place
+    return (other[0], place) if is_left_half(registry, state_at(place)) else (place, other[0])
+
+
+def container_at(registry: Registry, state_at: StateAt, place: Position) -> Position:
+    """Return the position of the container to which a block belongs: that of its right half."""
+    return halves_at(registry, state_at, place)[0]
 
 
 def believed_container_at(registry: Registry, state_at: StateAt, place: Position) -> Position:

@@ -10,8 +10,10 @@ from typing import Any
 
 from beliefnest.errors import InputError, WorldError
 from beliefnest.skills.calls import Call
+from beliefnest.world.circuits import Circuits
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_door, is_open
+from beliefnest.world.double_chests import CHESTS, StateAt, halves_at
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_fault
 from beliefnest.world.texts import MOST_UTTERANCES, quoted
@@ -282,4 +284,20 @@ def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
         hand.world.contents(place)
     except WorldError:
         raise hand.lacking("chest", place, _CHEST) from None
+    if above := _on_lid(hand.world.state_at, place):
+        raise SkillError(
+            f"the chest at {place} cannot be opened: {above} lies on its lid. Remove it first."
+        )
     hand.world.open(hand.name, place)
+
+
+def _on_lid(state_at: StateAt, place: Position) -> str | None:
+    """Return the block that keeps a chest shut: one that carries power, on the lid of either half.
+
+    Bots have the same rule in `worlds/minecraft/node/src/server/plugins/lib/onLid.js`.
+    """
+    registry, conductors = Registry.load(), Circuits.load().conductors
+    if registry.name(state_at(place)) not in CHESTS:
+        return None
+    lids = [state_at((x, y + 1, z)) for x, y, z in halves_at(registry, state_at, place)]
+    return next((registry.name(state) for state in lids if state in conductors), None)

@@ -15,19 +15,12 @@ function findContainer ({ bot, fail }, position) {
   return block
 }
 
-function checkLid ({ bot, fail }, block) {
-  const above = bot.blockAt(block.position.offset(0, 1, 0))
-  if (block.name === 'barrel' || !above || above.boundingBox !== 'block' || above.transparent) return
-  fail(`the chest at ${show(block.position)} cannot be opened: ${above.name} lies on its lid. Remove it first.`)
-}
-
 /** Go to the container, open it, call `action` with its window, and close it in any case. */
 async function withContainer (context, position, action) {
   const { bot } = context
   if (!isUnseen(bot, position)) findContainer(context, position)
   await walkToUse(context, position, 'the chest')
   const block = findContainer(context, position)
-  checkLid(context, block)
   const window = await bot.openContainer(block)
   try {
     return await action(window)

@@ -1,6 +1,12 @@
 'use strict'
-/** Immediate failure of block uses that are out of reach. The server itself would not answer them. */
+/** Immediate failure of uses of blocks that are out of reach, or do not open. The server itself would not answer them. */
+const { show } = require('../../../../../skills/code/lib/arguments')
 const { hindranceOf } = require('../../../../../skills/code/lib/sight')
+const { onLid } = require('../server/plugins/lib/onLid')
+const { blockStates } = require('../server/plugins/lib/states')
+
+const CHESTS = ['chest', 'trapped_chest']
+const AIR = 0
 
 /** Methods that use a block, each with the position that must be visible for it. */
 const USES = {
@@ -12,6 +18,14 @@ const USES = {
 
 /** Make the bot's methods that use blocks reject where the server would refuse them. */
 function refuseUnreachable (bot) {
+  const { describe } = blockStates(bot.registry)
+  const at = position => describe(bot.blockAt(position)?.stateId ?? AIR)
+  const { openBlock } = bot
+  bot.openBlock = async (block, ...rest) => {
+    const above = CHESTS.includes(block?.name) ? onLid(at, block.position) : undefined
+    if (above !== undefined) throw new Error(`the chest at ${show(block.position)} cannot be opened: ${above.name} lies on its lid. Remove it first.`)
+    return openBlock(block, ...rest)
+  }
   const check = (name, position) => {
     const why = hindranceOf(bot, position)
     if (why !== null) throw new Error(`${name} at (${position.x}, ${position.y}, ${position.z}) cannot be reached from here: ${why}`)

@@ -3,18 +3,11 @@
 const { cell, containerMenu } = require('./lib/menus')
 const { halvesAt, partnerOf } = require('./lib/doubleChest')
 const { HALF, TITLES, windowOf } = require('./lib/chestWindows')
+const { onLid } = require('./lib/onLid')
 
 const LID_ACTION = 1
 /** Game mode of players whose looking does not open a lid. */
 const SPECTATOR = 3
-
-const isFullCube = ({ shapes }) => shapes.length === 1 &&
-  shapes[0].every((edge, i) => edge === (i < 3 ? 0 : 1))
-
-function isBlocked (serv, position) {
-  const above = serv.blocks.at(position.offset(0, 1, 0))
-  return serv.blocks.at(position).name !== 'barrel' && isFullCube(above) && !above.transparent
-}
 
 /** Show whether anybody looks into the container. */
 function showLid (serv, position) {
@@ -35,7 +28,7 @@ module.exports.server = (serv) => {
 
   function open ({ player, position, block }) {
     const positions = halvesAt(serv.blocks.at, position)
-    if (positions.some((half) => isBlocked(serv, half))) return true
+    if (onLid(serv.blocks.at, position)) return true
     const cells = positions.flatMap((half) => {
       const slots = serv.containers.slots(half)
       return slots.map((_, i) => cell(slots, i))
