@@ -1,4 +1,4 @@
-"""What lies on the lid of a chest keeps it shut, in both worlds, if Minecraft's rule says so."""
+"""A block on the lid of a chest keeps it shut, in both worlds, if Minecraft's rule says so."""
 
 from collections.abc import Iterator
 from typing import Any
