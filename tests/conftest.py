@@ -68,9 +68,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """Leave what was collected out of searches for cycles, and search as rarely as commands do."""
+    """Leave what was collected out of searches for cycles."""
     gc.freeze()
-    gc.set_threshold(300_000)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
