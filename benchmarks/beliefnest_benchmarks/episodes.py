@@ -68,12 +68,12 @@ def _branches() -> Metric:
     task = Task.load("tell-what-is-needed", agents=3)
     with Episode(task) as episode:
         view = episode.view("nora")
-        planner = Planner(view.brief)
-        planner.plan(view.imagine(1), "nora", 1, view.ticks_left, SearchBounds())
-        planner = Planner(view.brief)
-        started = time.perf_counter()
-        planner.plan(view.imagine(1), "nora", 1, view.ticks_left, SearchBounds())
-        seconds = time.perf_counter() - started
+        # The first search compiles.
+        for _ in range(2):
+            planner = Planner(view.brief)
+            started = time.perf_counter()
+            planner.planning("nora", 1, view.ticks_left, SearchBounds()).best(view.imagine(1))
+            seconds = time.perf_counter() - started
     rate = planner.tried / seconds
     return Metric("branches, order 1, 3 agents", rate, "1/s", 200.0, at_least=True)
 
