@@ -5,7 +5,6 @@ const { hindranceOf } = require('../../../../../skills/code/lib/sight')
 const { onLid } = require('../server/plugins/lib/onLid')
 const { blockStates } = require('../server/plugins/lib/states')
 
-const CHESTS = ['chest', 'trapped_chest']
 const AIR = 0
 
 /** Methods that use a block, each with the position that must be visible for it. */
@@ -22,7 +21,7 @@ function refuseUnreachable (bot) {
   const at = position => describe(bot.blockAt(position)?.stateId ?? AIR)
   const { openBlock } = bot
   bot.openBlock = async (block, ...rest) => {
-    const above = CHESTS.includes(block?.name) ? onLid(at, block.position) : undefined
+    const above = block?.position ? onLid(at, block.position) : undefined
     if (above !== undefined) throw new Error(`the chest at ${show(block.position)} cannot be opened: ${above.name} lies on its lid. Remove it first.`)
     return openBlock(block, ...rest)
   }
