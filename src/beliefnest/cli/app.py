@@ -153,7 +153,7 @@ def _run_command(arguments: Sequence[str]) -> Any:
 
 @cache
 def _all_commands() -> Any:
-    """Return the command of commands, whose options take 15 ms to be read from their signatures."""
+    """Return the command that holds all others; reading their signatures takes 15 ms."""
     return typer.main.get_command(app)
 
 

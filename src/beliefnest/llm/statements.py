@@ -142,7 +142,7 @@ def statements(text: str) -> list[Statement]:
     candidates.sort(key=lambda each: (each.start, -each.end))
     kept: list[Statement] = []
     for each in candidates:
-        # None holds another one, so their ends are in order as well.
+        # No kept statement lies within another one, so their ends are sorted as well.
         outer = bisect_left(kept, each.end, key=lambda k: k.end)
         if outer == len(kept):
             kept.append(each)
