@@ -47,12 +47,14 @@ class PlayedTask(msgspec.Struct, frozen=True):
     Attributes:
         task: Its first instance.
         plain: Rows of policies that are no rules.
-        ruled: Rows of rules without beliefs, by rule; the one that draws and the trained one last.
+        ruled: Rows of rules without beliefs, by rule.
+        chance: The rule that draws.
     """
 
     task: Task
     plain: Sequence[Group]
     ruled: Mapping[str, Group]
+    chance: str
 
     @property
     def groups(self) -> list[Group]:
@@ -109,11 +111,13 @@ def _played(name: str, options: PlayOptions) -> PlayedTask:
     task, last = Task.load(name), _TRAINED + min(_TRAINING, options.seeds)
     trained = trained_rule(partial(Task.load, name), range(_TRAINED, last))
     policies, orders = _POLICIES_OF[task.form.goals_known]
-    rules = {policy_of(rule): rule for rule in (*rules_of(task), trained)}
+    *keys, chance = rules_of(task)
+    rules = {policy_of(rule): rule for rule in (*keys, chance, trained)}
     study = Study(tasks=[name], policies=(*policies, *rules), orders=orders, seeds=options.seeds)
     groups = _summary(study, options, task.name)
     ruled = {rules[each["policy"]]: each for each in groups if each["policy"] in rules}
-    return PlayedTask(task, [each for each in groups if each["policy"] not in rules], ruled)
+    plain = [each for each in groups if each["policy"] not in rules]
+    return PlayedTask(task, plain, ruled, chance)
 
 
 def _summary(study: Study, options: PlayOptions, part: str) -> list[dict[str, Any]]:
@@ -224,7 +228,7 @@ def _is_shortcut(group: Group, *, is_single: bool) -> bool:
 
 def _rule_line(played: PlayedTask) -> str:
     """Return the line of a task about rules without beliefs: chance, and the best rules."""
-    level = list(played.ruled.values())[-2]
+    level = played.ruled[played.chance]
     ranked = sorted(played.ruled.items(), key=lambda each: -each[1]["right"])
     _, best = ranked[0]
     others = ", ".join(f"`{rule}` {row['right']}" for rule, row in ranked[1:])
