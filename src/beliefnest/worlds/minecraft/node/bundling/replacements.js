@@ -6,6 +6,7 @@
 const fs = require('node:fs')
 const path = require('node:path')
 const { MEMOISED } = require('../src/memoise')
+const { vec3Text } = require('../src/sandbox/guest/vec3-text')
 const { interpreterBytes: _, ...interpreterLimits } = require('../src/sandbox/interpreter')
 
 const ROOT = path.join(__dirname, '..')
@@ -68,6 +69,7 @@ const STAND_INS = [
     ...${JSON.stringify(interpreterLimits)},
     interpreterBytes: () => require('node:fs').readFileSync(require('node:path').join(__dirname, '${INTERPRETER}'))
   }`],
+  [/sandbox\/guest\/vec3-text\.js$/, `module.exports = ${JSON.stringify({ vec3Text })}`],
   [/sandbox\/beginning\.js$/, `module.exports = {
     readyMade () {
       const packed = require('node:fs').readFileSync(require('node:path').join(__dirname, '${STATES}'))

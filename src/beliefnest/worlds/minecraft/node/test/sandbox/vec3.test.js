@@ -3,10 +3,11 @@
 const assert = require('node:assert/strict')
 const { describe, it } = require('node:test')
 const { Vec3, default: make = require('vec3') } = require('vec3')
+const vm = require('node:vm')
 const defineVec3 = require('../../src/sandbox/guest/vec3')
 
 const env = {}
-defineVec3(env)
+vm.runInThisContext(defineVec3)(env)
 const Guest = env.Vec3
 
 const POINTS = [[0, 0, 0], [1.5, -2.25, 3], [-7.1, 64, 0.3], [1e6, -0.5, 2 / 3]]
