@@ -8,13 +8,13 @@ from beliefnest.cli.console import progress_on
 from beliefnest.cli.terminal_text import say
 from beliefnest.studies.archive import write_zip
 from beliefnest.studies.bundling import bundled, opened
-from beliefnest.studies.methods import MethodsForm, facts_of, methods_text
+from beliefnest.studies.methods import MethodsForm, methods_text
 from beliefnest.world.words import counted
 
 
 def print_methods(folder: Path, form: MethodsForm) -> None:
     """Print the paragraph for a methods section; raise InputError if there are no results."""
-    say(methods_text(facts_of(opened(folder)), form))
+    say(methods_text(opened(folder), form))
 
 
 def write_bundle(folder: Path, out: Path | None, *, runs: bool) -> None:

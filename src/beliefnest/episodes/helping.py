@@ -14,18 +14,18 @@ are superfluous, as in every but-for test.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import TYPE_CHECKING
 
 import msgspec
 from msgspec.structs import replace
 
 from beliefnest.episodes.agent_view import GO_ON, AgentView, Policy
-from beliefnest.episodes.decided import Decision, RoundPart
+from beliefnest.episodes.decided import Decision
 from beliefnest.episodes.shares import Share, shares_of
-from beliefnest.episodes.task import Task
-from beliefnest.nest.face.nest import Nest
-from beliefnest.scenarios.goals import Progress
 from beliefnest.world.event_kinds import EventKind
+
+if TYPE_CHECKING:
+    from beliefnest.episodes.episode import Episode
 
 _GAVE = EventKind.GIVE_ITEM_TO_OTHER
 
@@ -73,38 +73,6 @@ class Help:
         return tuple(act for act in self.acts if not act.worse)
 
 
-class Branching(Protocol):
-    """Protocol of a recorded episode that can be branched."""
-
-    task: Task
-
-    @property
-    def nest(self) -> Nest:
-        """Nest of the episode."""
-
-    @property
-    def start(self) -> int:
-        """Tick at which the first round began."""
-
-    @property
-    def beginnings(self) -> Sequence[int]:
-        """Ticks at which rounds began."""
-
-    @property
-    def parts(self) -> Sequence[RoundPart]:
-        """Decisions in each part of each round, and their results."""
-
-    @property
-    def progress(self) -> Mapping[str, Progress]:
-        """Progress of each agent's goal."""
-
-    def play(self, rounds: int | None = None) -> Self:
-        """Play some rounds, or to the end."""
-
-    def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
-        """Return the episode from a round on, on a new branch with other policies."""
-
-
 class _Without(msgspec.Struct, frozen=True):
     """Policy that repeats earlier decisions, except in some rounds.
 
@@ -128,7 +96,7 @@ class _Without(msgspec.Struct, frozen=True):
         return decision.program
 
 
-def help_in(episode: Branching, policies: Mapping[str, Policy]) -> Help:
+def help_in(episode: "Episode", policies: Mapping[str, Policy]) -> Help:
     """Measure help in an episode that has ended.
 
     Args:
@@ -160,13 +128,13 @@ def help_in(episode: Branching, policies: Mapping[str, Policy]) -> Help:
     return Help(tuple(needed), tuple(helpers), tuple(acts))
 
 
-def _done(episode: Branching, shares: Mapping[str, Share]) -> dict[str, float]:
+def _done(episode: "Episode", shares: Mapping[str, Share]) -> dict[str, float]:
     """Return the tick by which each agent's share had come true; infinite: it never did."""
     progress = episode.progress
     return {agent: share.done_at(progress[agent]) for agent, share in shares.items()}
 
 
-def _acts(episode: Branching, agent: str) -> list[HelpingAct]:
+def _acts(episode: "Episode", agent: str) -> list[HelpingAct]:
     """Return the programs of an agent in which it said or gave something."""
     state = episode.nest["/"].state
     gave = {e.tick for e in state.events if (e.actor, e.kind) == (agent, _GAVE)}

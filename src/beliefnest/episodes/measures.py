@@ -1,14 +1,13 @@
 """Measures of an episode, as one row of a table."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from beliefnest.episodes.agent_view import utterances
-from beliefnest.episodes.decided import Failure, RoundPart, Spent
-from beliefnest.episodes.task import Task
-from beliefnest.nest.face.nest import Nest
 from beliefnest.world.event_kinds import EventKind
+
+if TYPE_CHECKING:
+    from beliefnest.episodes.episode import Episode
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,54 +86,7 @@ class Measures:
         return asdict(self)
 
 
-class Measurable(Protocol):
-    """Protocol of an episode that can be measured."""
-
-    task: Task
-    seed: int
-
-    @property
-    def nest(self) -> Nest:
-        """Nest of the episode."""
-
-    @property
-    def start(self) -> int:
-        """Tick at which the first round began."""
-
-    @property
-    def parts(self) -> Sequence[RoundPart]:
-        """Decisions in each part of each round, and their results."""
-
-    @property
-    def policies(self) -> Mapping[str, str]:
-        """Policies by agent, as text."""
-
-    @property
-    def success(self) -> bool:
-        """True if the goal was reached."""
-
-    @property
-    def beginnings(self) -> Sequence[int]:
-        """Ticks at which rounds began."""
-
-    @property
-    def ticks(self) -> int:
-        """Number of ticks until success or now."""
-
-    @property
-    def rounds(self) -> int:
-        """Number of rounds played."""
-
-    @property
-    def failures(self) -> Sequence[Failure]:
-        """Programs that failed, and rounds in which a policy gave none, with the reasons."""
-
-    @property
-    def spent(self) -> Spent:
-        """Spending of policies on models."""
-
-
-def measured(episode: Measurable) -> Measures:
+def measured(episode: "Episode") -> Measures:
     """Return the measures of an episode up to now."""
     nest, task = episode.nest, episode.task
     players, start = set(task.players), episode.start
@@ -178,7 +130,7 @@ def measured(episode: Measurable) -> Measures:
     )
 
 
-def false_beliefs(episode: Measurable) -> list[tuple[int, dict[str, int]]]:
+def false_beliefs(episode: "Episode") -> list[tuple[int, dict[str, int]]]:
     """Return the number of false beliefs of each agent at the beginnings of rounds and now.
 
     Each entry has its tick. Beliefs about the beliefs of others are not counted.
@@ -190,7 +142,7 @@ def false_beliefs(episode: Measurable) -> list[tuple[int, dict[str, int]]]:
     ]
 
 
-def _acted_on_false(episode: Measurable) -> int:
+def _acted_on_false(episode: "Episode") -> int:
     """Return how often agents opened a container with fewer of an item than they believed."""
     nest, count = episode.nest, 0
     opened = [

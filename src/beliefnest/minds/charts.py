@@ -1,17 +1,17 @@
 """Posteriors as values that `pictures` draws."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING
 
 from beliefnest.errors import InputError
-from beliefnest.minds.findings import EvidenceEffect, Impossible
-from beliefnest.minds.mind_model import MindModel
 from beliefnest.pictures.bars import BarChart, BarGroup
 from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.palette import hypothesis_colours, shades
 from beliefnest.pictures.posterior import PosteriorPanel, posterior_plot
 from beliefnest.pictures.time_axis import NotedAct
-from beliefnest.world.values import Position
+
+if TYPE_CHECKING:
+    from beliefnest.minds.inference import Inference
 
 _MOST_NOTES = 3
 _LEAST_BITS = 0.3
@@ -24,42 +24,7 @@ _TITLES: Mapping[str, str] = {
 }
 
 
-class Posterior(Protocol):
-    """Posterior over time, as an `Inference` gives it."""
-
-    model: MindModel
-    until: int
-
-    @property
-    def factors(self) -> tuple[str, ...]:
-        """Names of all factors."""
-
-    @property
-    def parts(self) -> dict[str, tuple[str, str]]:
-        """Kind of each factor and its goal or alternative, by the name of the factor."""
-
-    @property
-    def impossible(self) -> Impossible | None:
-        """First evidence that no hypothesis explains; None if there is none."""
-
-    @property
-    def ticks(self) -> tuple[int, ...]:
-        """Ticks with evidence."""
-
-    def mean(self, factor: str, tick: int | None = None) -> float:
-        """Return the posterior mean of a factor at a tick; None: at the last one."""
-
-    def marginal(self, factor: str, tick: int | None = None) -> dict[Any, float]:
-        """Return the probability of each value of a factor at a tick; None: at the last one."""
-
-    def explain(self, tick: int | None = None) -> list[EvidenceEffect]:
-        """Return the effect of each piece of evidence; with a tick, of those of this tick."""
-
-    def predict(self, steps: int = 1, tick: int | None = None) -> list[dict[Position, float]]:
-        """Return the probability of each cell after each of the next actions."""
-
-
-def titles(inference: Posterior) -> dict[str, str]:
+def titles(inference: "Inference") -> dict[str, str]:
     """Return headings by kind of factor, of those kinds that a model leaves open."""
     model = inference.model
     weights = model.actual_weights
@@ -73,7 +38,7 @@ def titles(inference: Posterior) -> dict[str, str]:
     return {kind: title for kind, title in _TITLES.items() if is_open[kind]}
 
 
-def plot_of(inference: Posterior, factors: Sequence[str]) -> Figure:
+def plot_of(inference: "Inference", factors: Sequence[str]) -> Figure:
     """Return the figure of a posterior over time.
 
     Args:
@@ -88,12 +53,12 @@ def plot_of(inference: Posterior, factors: Sequence[str]) -> Figure:
     return posterior_plot(panels, inference.until + 1, _notes(inference), title)
 
 
-def panels_of(inference: Posterior, factors: Sequence[str] = ()) -> list[PosteriorPanel]:
+def panels_of(inference: "Inference", factors: Sequence[str] = ()) -> list[PosteriorPanel]:
     """Return the panels of `plot_of`; arguments and errors are the same."""
     return [_panel(inference, name) for name in factors or titles(inference)]
 
 
-def bars_of(inference: Posterior, tick: int | None) -> BarChart:
+def bars_of(inference: "Inference", tick: int | None) -> BarChart:
     """Return the posterior at a tick as bars; None: at the last one."""
     groups = []
     for kind, title in titles(inference).items():
@@ -114,7 +79,7 @@ def bars_of(inference: Posterior, tick: int | None) -> BarChart:
     return BarChart(inference.model.agent, f"inferred from ticks to {last}", tuple(groups))
 
 
-def heat_of(inference: Posterior, steps: int, tick: int | None) -> dict[tuple[int, int], float]:
+def heat_of(inference: "Inference", steps: int, tick: int | None) -> dict[tuple[int, int], float]:
     """Return the probability of each column after some actions, by the posterior at a tick."""
     heat: dict[tuple[int, int], float] = {}
     for (x, _, z), share in inference.predict(steps, tick)[-1].items():
@@ -122,19 +87,19 @@ def heat_of(inference: Posterior, steps: int, tick: int | None) -> dict[tuple[in
     return heat
 
 
-def _colours(inference: Posterior) -> dict[str, str]:
+def _colours(inference: "Inference") -> dict[str, str]:
     """Return the colours of the goals and alternatives of a model."""
     return hypothesis_colours(inference.model.goals, inference.model.alternative_names)
 
 
-def _utility_scale(inference: Posterior) -> tuple[float, float]:
+def _utility_scale(inference: "Inference") -> tuple[float, float]:
     """Return the ends of the scale of utilities; 0 is on it."""
     rows = inference.model.utility_rows
     low, high = min(0.0, float(rows.min())), max(0.0, float(rows.max()))
     return low, high if high > low else low + 1
 
 
-def _panel(inference: Posterior, name: str) -> PosteriorPanel:
+def _panel(inference: "Inference", name: str) -> PosteriorPanel:
     kinds = {kind for kind, _ in inference.parts.values()} - {"cell"}
     if name not in kinds and (name not in inference.factors or name == "cell"):
         plottable = ", ".join([*sorted(kinds), *inference.factors[:-1]])
@@ -158,7 +123,7 @@ def _panel(inference: Posterior, name: str) -> PosteriorPanel:
     )
 
 
-def _notes(inference: Posterior) -> list[NotedAct]:
+def _notes(inference: "Inference") -> list[NotedAct]:
     """Return the most informative actions, and the impossible one, if any."""
     acts = [
         (max(bits.values()), change)

@@ -12,7 +12,7 @@ from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.archive import check_secrets, with_manifest
 from beliefnest.studies.filter_packages import PACKAGES, filter_packages
 from beliefnest.studies.kinds import EPISODE_KIND, RUN_KIND, SCENARIO_KIND
-from beliefnest.studies.methods import RunFacts, facts_of, methods_text
+from beliefnest.studies.methods import methods_text
 from beliefnest.studies.page import page_text
 from beliefnest.studies.plainframe import csv_text
 from beliefnest.studies.study_record import StudyRecord
@@ -57,10 +57,9 @@ def _files(result: StudyRecord, *, runs: bool) -> dict[str, bytes]:
     of_kind = _study_files if result.folder.of == "study" else _run_files
     files = {**dict(of_kind(result, runs=runs)), **filter_packages()}
     files["rows.csv"] = csv_text(result.typed()).encode()
-    facts = facts_of(result)
-    for form, name in (("markdown", "methods.md"), ("latex", "methods.tex")):
-        files[name] = methods_text(facts, "latex" if form == "latex" else "markdown").encode()
-    files["README.md"] = _readme(result, facts, files).encode()
+    files["methods.md"] = methods_text(result, "markdown").encode()
+    files["methods.tex"] = methods_text(result, "latex").encode()
+    files["README.md"] = _readme(result, files).encode()
     return files
 
 
@@ -114,8 +113,8 @@ def _secrets(environment: Mapping[str, str]) -> Secrets:
     return Secrets(values)
 
 
-def _readme(result: StudyRecord, facts: RunFacts, files: Mapping[str, bytes]) -> str:
-    version = facts.versions.get("beliefnest", "")
+def _readme(result: StudyRecord, files: Mapping[str, bytes]) -> str:
+    version = result.plan["versions"].get("beliefnest", "")
     pin = f"=={version}" if version else ""
     kind = result.folder.of
     filters = ""
@@ -131,7 +130,7 @@ def _readme(result: StudyRecord, facts: RunFacts, files: Mapping[str, bytes]) ->
     )
     return f"""# Supplement of a {kind}
 
-{methods_text(facts, "markdown")}
+{methods_text(result, "markdown")}
 Play everything again, without any model, and compare all rows:
 
 ```bash

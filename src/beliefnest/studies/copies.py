@@ -5,23 +5,19 @@ rows is counted. The column `copy_of` marks the others.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from beliefnest.plan.cells import digest
+
+if TYPE_CHECKING:
+    from beliefnest.studies.study_folder import StudyFolder
 
 _OWN = ("key", "seed", "run")
 """Keys of a cell's file that identify the cell and are no part of its result."""
 
 
-class CellResults(Protocol):
-    """Folder that has the results of cells."""
-
-    def cell(self, name: str) -> dict[str, Any] | None:
-        """Return the result of a cell; None: it has none."""
-
-
 def rows_with_copies(
-    folder: CellResults,
+    folder: "StudyFolder",
     plan: Mapping[str, Any],
     rows_of: Callable[[Mapping[str, Any], Mapping[str, Any]], Iterable[dict[str, Any]]],
 ) -> Iterator[dict[str, Any]]:

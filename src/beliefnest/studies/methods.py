@@ -6,8 +6,6 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, get_args
 
-import msgspec
-
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular
 from beliefnest.llm.resolve import can_vary
@@ -26,109 +24,6 @@ MethodsForm = Literal["markdown", "latex"]
 FORMATS: tuple[MethodsForm, ...] = get_args(MethodsForm)
 
 
-class ModelFacts(msgspec.Struct, frozen=True):
-    """Model of a study.
-
-    Attributes:
-        name: Its name.
-        answers: Number of recorded answers.
-        dates: First and last day of the answers; None: no date is recorded.
-        undated: Number of answers without a recorded date.
-    """
-
-    name: str
-    answers: int = 0
-    dates: tuple[str, str] | None = None
-    undated: int = 0
-
-
-class PeopleFacts(msgspec.Struct, frozen=True):
-    """People who answered on a page for participants.
-
-    Attributes:
-        name: Their name in the column `model`.
-        participants: Number of participants.
-        rows: Number of their rows.
-        shown: What they were shown: `film`, `story`, `both`.
-        dates: First and last day; None: no date is recorded.
-        sessions: How many began, were complete, partial, unanswered, repeated, and `excluded` by
-            a list for each reason; empty: not noted.
-    """
-
-    name: str
-    participants: int
-    rows: int
-    shown: Sequence[str]
-    dates: tuple[str, str] | None
-    sessions: Mapping[str, Any] = msgspec.field(default_factory=dict)
-
-
-class RunFacts(msgspec.Struct, frozen=True):
-    """Recorded facts about a study or a run.
-
-    Attributes:
-        kind: `study` or `run`.
-        versions: Versions of programs by name; empty: not recorded.
-        world: Name of the world.
-        subjects: What was played, in words with names in code marks.
-        factors: What it was combined with, in the same form.
-        seed: Seed, in the same form; None: there is none.
-        models: Models that answered.
-        asking: How models were asked, in words; empty: they were not.
-        templates: Prompt templates with the hash of their texts; None: built in.
-        cells: Number of cells, without those of people.
-        rows: Number of rows, without those of people.
-        judged: Number of judged rows, without copies.
-        variations: Number of independent variations among them.
-        tokens: Tokens of all rows.
-        cost: Known cost of all rows in US dollars.
-        unpriced: Number of rows whose cost is not known.
-        excluded: What was excluded, by keys of `_EXCLUDED`, and how often.
-        computed: Number of judged rows whose right answers were computed from beliefs.
-        not_answered: Number of judged rows by outcome, of those without an answer or result.
-        rounds_not_answered: Number of rounds of episodes in which a model gave no program, by
-            outcome.
-        asked_again: Number of requests after answers that could not be read.
-        intervals: Methods of the intervals of accuracies.
-        people: People who answered.
-    """
-
-    kind: Literal["study", "run"]
-    versions: Mapping[str, str]
-    world: str
-    subjects: str
-    factors: Sequence[str]
-    seed: str | None
-    models: Sequence[ModelFacts]
-    asking: str
-    templates: Mapping[str, str | None]
-    cells: int
-    rows: int
-    judged: int
-    variations: int
-    tokens: int
-    cost: float
-    unpriced: int
-    excluded: Mapping[str, int] = msgspec.field(default_factory=dict)
-    computed: int = 0
-    not_answered: Mapping[str, int] = msgspec.field(default_factory=dict)
-    rounds_not_answered: Mapping[str, int] = msgspec.field(default_factory=dict)
-    asked_again: int = 0
-    intervals: Sequence[str] = ()
-    people: Sequence[PeopleFacts] = ()
-
-
-def answered(names: Sequence[str], exchanges: Sequence[Exchange]) -> list[ModelFacts]:
-    """Return the facts about each model, from its recorded answers."""
-    models = []
-    for name in dict.fromkeys(names):
-        own = [each for each in exchanges if each.model == name]
-        dates = sorted(each.date for each in own if each.date)
-        span = (dates[0], dates[-1]) if dates else None
-        models.append(ModelFacts(name, len(own), span, len(own) - len(dates)))
-    return models
-
-
 def usage_of(rows: Sequence[Row]) -> tuple[int, float, int]:
     """Return tokens, known cost and number of rows without known cost."""
     # Rows of cells without a result have no tokens.
@@ -139,64 +34,6 @@ def usage_of(rows: Sequence[Row]) -> tuple[int, float, int]:
         sum(row.get("cost") or 0.0 for row in rows),
         sum(row.get("cost") is None for row in ended),
     )
-
-
-def facts_of(result: StudyRecord) -> RunFacts:
-    """Return the facts about a study or run, from its folder.
-
-    Raises:
-        InputError: A file of the folder is damaged.
-    """
-    plan, rows, of = result.plan, result.rows, result.folder.of
-    names = [each.removeprefix("model:") for each in plan["models"]]
-    names += [plan["claims_from"]] if plan.get("claims_from") else []
-    tokens, cost, unpriced = usage_of(rows)
-    judged = [row for row in rows if row["ok"] is not None and row["copy_of"] is None]
-    return RunFacts(
-        kind=of,
-        versions=plan["versions"],
-        world=plan["world"],
-        subjects=_subjects(plan, result.kind),
-        factors=list(_factors(plan, result.kind)),
-        seed=None if "seed" not in plan else f"seed {plan['seed']}",
-        models=answered(names, result.folder.exchanges()),
-        asking=_asking(plan, rows),
-        templates=_templates(result),
-        cells=sum(PARTICIPANT not in cell["key"] for cell in plan["cells"]),
-        rows=sum(row.get(PARTICIPANT) is None for row in rows),
-        judged=len(judged),
-        variations=len({row["variation"] for row in judged}),
-        tokens=tokens,
-        cost=cost,
-        unpriced=unpriced,
-        excluded=_excluded(result),
-        computed=_computed(judged),
-        not_answered=_not_answered(judged),
-        rounds_not_answered=_rounds_not_answered(judged),
-        asked_again=sum(row.get("asked_again") or 0 for row in judged),
-        intervals=_intervals(result.counted(result.groups)) if of == "study" else (),
-        people=list(_people(result)),
-    )
-
-
-def _people(result: StudyRecord) -> Iterator[PeopleFacts]:
-    """Yield the facts about the people of each name."""
-    cells: dict[str, list[Mapping[str, Any]]] = {}
-    for cell in result.plan["cells"]:
-        if PARTICIPANT in cell["key"]:
-            cells.setdefault(cell["key"]["model"], []).append(cell)
-    for name, own in cells.items():
-        contents = [result.folder.cell(cell["name"]) or {} for cell in own]
-        pages = [each.get("page") or {} for each in contents]
-        days = sorted(str(page["started"])[:10] for page in pages if page.get("started"))
-        yield PeopleFacts(
-            name=name,
-            participants=len({cell["key"][PARTICIPANT] for cell in own}),
-            rows=sum(row["model"] == name for row in result.rows),
-            shown=sorted({str(page["shown"]) for page in pages if page.get("shown")}),
-            dates=(days[0], days[-1]) if days else None,
-            sessions=result.folder.sessions().get(name, {}),
-        )
 
 
 def _not_answered(rows: Sequence[Row]) -> dict[str, int]:
@@ -274,8 +111,6 @@ def _varied(plan: Mapping[str, Any]) -> list[str]:
 
 
 def _asking(plan: Mapping[str, Any], rows: Sequence[Row]) -> str:
-    if "attempts" not in plan:
-        return ""
     heat = plan["temperature"]
     heat_words = "the provider's default temperature" if heat is None else f"temperature {heat:g}"
     parts = [f"at {heat_words}"]
@@ -297,14 +132,11 @@ def _asking(plan: Mapping[str, Any], rows: Sequence[Row]) -> str:
     return ", ".join(parts)
 
 
-def _templates(result: StudyRecord) -> dict[str, str | None]:
-    digests: dict[str, str | None] = {}
-    for name in result.plan.get("templates", []):
-        digests[name] = None
-        if name not in BUILT_IN_TEMPLATES:
-            text = read_regular(result.folder.path / result.plan["inputs"]["templates"][name])
-            digests[name] = hashlib.sha256(text).hexdigest()[:12]
-    return digests
+def _source(result: StudyRecord, template: str) -> str:
+    if template in BUILT_IN_TEMPLATES:
+        return "built in"
+    text = read_regular(result.folder.path / result.plan["inputs"]["templates"][template])
+    return f"SHA-256 {hashlib.sha256(text).hexdigest()[:12]}"
 
 
 def _excluded(result: StudyRecord) -> dict[str, int]:
@@ -329,83 +161,98 @@ _EXCLUDED = {
 _NOUNS = {"combination": "combination", "unplayed": "cell", "unjudged": "row", "copy": "row"}
 
 
-def methods_text(facts: RunFacts, form: MethodsForm) -> str:
-    """Return the paragraph; it contains recorded facts only.
+def methods_text(result: StudyRecord, form: MethodsForm) -> str:
+    """Return the paragraph about a study or run; it contains recorded facts only.
 
     Raises:
-        InputError: The format does not exist.
+        InputError: The format does not exist, or a file of the folder is damaged.
     """
     if form not in FORMATS:
         raise InputError(f"there is no format {form!r}; give one of {', '.join(FORMATS)}")
     written = _latex if form == "latex" else _markdown
-    return " ".join(written(sentence) for sentence in _sentences(facts)) + "\n"
+    return " ".join(written(sentence) for sentence in _sentences(result)) + "\n"
 
 
-def _sentences(facts: RunFacts) -> Iterator[str]:
-    versions = facts.versions
+def _sentences(result: StudyRecord) -> Iterator[str]:
+    plan, of = result.plan, result.folder.of
+    versions = plan["versions"]
     program = f"BeliefNest {versions['beliefnest']}" if "beliefnest" in versions else "BeliefNest"
     details = [f"Python {versions['python']}"] if "python" in versions else []
     details += [versions["platform"]] if "platform" in versions else []
     on = f" ({', '.join(details)})" if details else " (version not recorded)"
-    yield f"The {facts.kind} was played with {program}{on} in the world {_code(facts.world)}."
-    yield f"It combines {facts.subjects} with {listed(facts.factors)}."
-    seed = "" if facts.seed is None else f"; all random numbers derive from {facts.seed}"
-    yield f"This makes {counted(facts.cells, 'cell')} and {counted(facts.rows, 'row')}{seed}."
-    if facts.models:
-        yield f"{'; '.join(_models(facts.models))}."
-    for people in facts.people:
-        yield f"{_person(people)}."
-        if people.sessions:
-            yield f"{_told_sessions(people.sessions)}."
-    if facts.asking and any(can_vary(each.name) for each in facts.models):
-        yield f"Models were asked {facts.asking}."
-    if facts.templates:
-        prompt_words = [
-            f"{_code(name)} ({'built in' if text is None else f'SHA-256 {text}'})"
-            for name, text in facts.templates.items()
-        ]
-        yield f"Prompts were rendered with {listed(prompt_words)}."
-    if facts.tokens or facts.cost or facts.unpriced:
-        cost = f"cost {facts.cost:.2f} US dollars"
-        if facts.unpriced:
-            cost += f", without {counted(facts.unpriced, 'row')} whose price is not known"
-        yield f"The answers used {facts.tokens:,} tokens and {cost}."
-    yield from _exclusions(facts)
+    yield f"The {of} was played with {program}{on} in the world {_code(plan['world'])}."
+    factors = list(_factors(plan, result.kind))
+    yield f"It combines {_subjects(plan, result.kind)} with {listed(factors)}."
+    seed = f"; all random numbers derive from seed {plan['seed']}" if "seed" in plan else ""
+    cells = sum(PARTICIPANT not in cell["key"] for cell in plan["cells"])
+    rows = sum(row.get(PARTICIPANT) is None for row in result.rows)
+    yield f"This makes {counted(cells, 'cell')} and {counted(rows, 'row')}{seed}."
+    names = [each.removeprefix("model:") for each in plan["models"]]
+    names += [plan["claims_from"]] if plan.get("claims_from") else []
+    clauses = list(_models(names, result.folder.exchanges()))
+    if clauses:
+        yield f"{'; '.join(clauses)}."
+    yield from _people(result)
+    if "attempts" in plan and any(map(can_vary, names)):
+        yield f"Models were asked {_asking(plan, result.rows)}."
+    templates = [f"{_code(name)} ({_source(result, name)})" for name in plan.get("templates", ())]
+    if templates:
+        yield f"Prompts were rendered with {listed(templates)}."
+    tokens, known_cost, unpriced = usage_of(result.rows)
+    if tokens or known_cost or unpriced:
+        cost = f"cost {known_cost:.2f} US dollars"
+        if unpriced:
+            cost += f", without {counted(unpriced, 'row')} whose price is not known"
+        yield f"The answers used {tokens:,} tokens and {cost}."
+    yield from _exclusions(result)
+    yield from _judged(result)
+    if of == "study":
+        intervals = _intervals(result.counted(result.groups))
+        if intervals:
+            yield f"The 95 % intervals of accuracies are by {listed(intervals)}."
+
+
+def _judged(result: StudyRecord) -> Iterator[str]:
+    """Yield the sentences about the judged rows."""
+    rows = [row for row in result.rows if row["ok"] is not None and row["copy_of"] is None]
+    variations = len({row["variation"] for row in rows})
     yield (
-        f"{counted(facts.judged, 'row').capitalize()} of "
-        f"{counted(facts.variations, 'independent variation')} "
-        f"{'is' if facts.judged == 1 else 'are'} judged."
+        f"{counted(len(rows), 'row').capitalize()} of "
+        f"{counted(variations, 'independent variation')} "
+        f"{'is' if len(rows) == 1 else 'are'} judged."
     )
-    if facts.not_answered:
-        missing, kinds = sum(facts.not_answered.values()), unanswered_words(facts.not_answered)
+    not_answered = _not_answered(rows)
+    if not_answered:
+        missing, kinds = sum(not_answered.values()), unanswered_words(not_answered)
         yield (
             f"Among them, {counted(missing, 'row')} without an answer to judge ({kinds}) count as "
             "not right."
         )
-    if facts.rounds_not_answered:
-        rounds = counted(sum(facts.rounds_not_answered.values()), "round")
-        kinds = unanswered_words(facts.rounds_not_answered)
-        yield f"Models gave no program in {rounds} ({kinds})."
-    if facts.asked_again:
-        yield f"Models were asked again after {counted(facts.asked_again, 'unreadable answer')}."
-    if facts.computed:
-        some = f" of {counted(facts.computed, 'row')}"
-        of = "" if facts.computed == facts.judged else some
+    rounds = _rounds_not_answered(rows)
+    if rounds:
+        gave = counted(sum(rounds.values()), "round")
+        yield f"Models gave no program in {gave} ({unanswered_words(rounds)})."
+    asked_again = sum(row.get("asked_again") or 0 for row in rows)
+    if asked_again:
+        yield f"Models were asked again after {counted(asked_again, 'unreadable answer')}."
+    computed = _computed(rows)
+    if computed:
+        of = "" if computed == len(rows) else f" of {counted(computed, 'row')}"
         yield f"Right answers{of} were computed from the beliefs of the simulated agents."
-    if facts.intervals:
-        yield f"The 95 % intervals of accuracies are by {listed(facts.intervals)}."
 
 
-def _exclusions(facts: RunFacts) -> Iterator[str]:
+def _exclusions(result: StudyRecord) -> Iterator[str]:
     """Yield the sentences about what was excluded."""
-    reasons = [each.sessions.get("excluded") for each in facts.people]
+    people = _people_cells(result)
+    sessions = result.folder.sessions()
+    reasons = [sessions.get(name, {}).get("excluded") for name in people]
     reasons_words = [excluded_words(each) for each in reasons if each]
-    reasons_words += [_exclusion(name, count) for name, count in facts.excluded.items()]
+    reasons_words += [_exclusion(name, count) for name, count in _excluded(result).items()]
     if reasons_words:
         yield f"Excluded were {listed(reasons_words)}."
-    elif not facts.people:
+    elif not people:
         yield "Nothing was excluded."
-    if facts.people:
+    if people:
         yield (
             f"{'Further p' if any(reasons) else 'P'}articipants or answers that were left out of "
             "the files by hand are not recorded: report them."
@@ -421,38 +268,62 @@ def _exclusion(name: str, count: int) -> str:
     return words
 
 
-def _models(models: Sequence[ModelFacts]) -> Iterator[str]:
+def _models(names: Sequence[str], exchanges: Sequence[Exchange]) -> Iterator[str]:
     """Yield a clause for each model of a provider, and one for all others."""
-    yield from (_model(each) for each in models if can_vary(each.name))
-    others = [_code(each.name) for each in models if not can_vary(each.name)]
+    models = dict.fromkeys(names)
+    for name in filter(can_vary, models):
+        yield _model(name, [each for each in exchanges if each.model == name])
+    others = [_code(name) for name in models if not can_vary(name)]
     if others:
         are = "are no language models" if len(others) > 1 else "is no language model"
         yield f"{listed(others)} {are} of a provider"
 
 
-def _model(model: ModelFacts) -> str:
-    if not model.answers:
-        return f"{_code(model.name)} gave no recorded answer"
-    answers = f"{_code(model.name)} gave {counted(model.answers, 'recorded answer')}"
-    if model.dates is None:
+def _model(name: str, exchanges: Sequence[Exchange]) -> str:
+    if not exchanges:
+        return f"{_code(name)} gave no recorded answer"
+    answers = f"{_code(name)} gave {counted(len(exchanges), 'recorded answer')}"
+    dates = sorted(each.date for each in exchanges if each.date)
+    if not dates:
         return f"{answers} (dates not recorded)"
-    first, last = model.dates
-    span = f"on {first}" if first == last else f"from {first} to {last}"
-    without = f", {model.undated} without a recorded date" if model.undated else ""
-    return f"{answers} {span} (UTC){without}"
+    undated = len(exchanges) - len(dates)
+    without = f", {undated} without a recorded date" if undated else ""
+    return f"{answers} {_span(dates)} (UTC){without}"
 
 
-def _person(people: PeopleFacts) -> str:
-    shown = " and ".join(_SHOWN.get(each, each) for each in people.shown)
-    page = f"a page with {shown}" if shown else "a page"
-    words = (
-        f"{_code(people.name)} are {counted(people.participants, 'participant')} who answered the "
-        f"same questions on {page}, which gave {counted(people.rows, 'row')}"
-    )
-    if people.dates is None:
-        return f"{words} (dates not recorded)"
-    first, last = people.dates
-    return f"{words}, {f'on {first}' if first == last else f'from {first} to {last}'} (UTC)"
+def _span(dates: Sequence[str]) -> str:
+    """Return the first and last of sorted days, in words."""
+    first, last = dates[0], dates[-1]
+    return f"on {first}" if first == last else f"from {first} to {last}"
+
+
+def _people_cells(result: StudyRecord) -> dict[str, list[Mapping[str, Any]]]:
+    """Return the cells of the people of each name."""
+    cells: dict[str, list[Mapping[str, Any]]] = {}
+    for cell in result.plan["cells"]:
+        if PARTICIPANT in cell["key"]:
+            cells.setdefault(cell["key"]["model"], []).append(cell)
+    return cells
+
+
+def _people(result: StudyRecord) -> Iterator[str]:
+    """Yield the sentences about the people of each name."""
+    for name, cells in _people_cells(result).items():
+        pages = [(result.folder.cell(cell["name"]) or {}).get("page") or {} for cell in cells]
+        kinds = sorted({str(page["shown"]) for page in pages if page.get("shown")})
+        shown = " and ".join(_SHOWN.get(each, each) for each in kinds)
+        page_words = f"a page with {shown}" if shown else "a page"
+        participants = len({cell["key"][PARTICIPANT] for cell in cells})
+        rows = sum(row["model"] == name for row in result.rows)
+        dates = sorted(str(page["started"])[:10] for page in pages if page.get("started"))
+        when = f", {_span(dates)} (UTC)" if dates else " (dates not recorded)"
+        yield (
+            f"{_code(name)} are {counted(participants, 'participant')} who answered the same "
+            f"questions on {page_words}, which gave {counted(rows, 'row')}{when}."
+        )
+        sessions = result.folder.sessions().get(name)
+        if sessions:
+            yield f"{_told_sessions(sessions)}."
 
 
 def _told_sessions(sessions: Mapping[str, Any]) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.resources import files
-from typing import Any, Protocol
+from typing import Any
 
 from jinja2 import Environment, StrictUndefined
 
@@ -12,6 +12,7 @@ from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.counting import Pairs
+from beliefnest.studies.study_record import StudyRecord
 from beliefnest.studies.table import CellKind, variation_columns
 from beliefnest.world.texts import visible
 from beliefnest.world.words import counted
@@ -19,38 +20,7 @@ from beliefnest.world.words import counted
 _MOST_ROWS = 2_000
 
 
-class Counted(Protocol):
-    """Protocol of the results that a page shows; `StudyResult` implements it."""
-
-    @property
-    def plan(self) -> Mapping[str, Any]:
-        """Return the latest plan, as plain values."""
-
-    @property
-    def rows(self) -> Sequence[Mapping[str, Any]]:
-        """Return the rows of `frame` as plain values."""
-
-    @property
-    def kind(self) -> CellKind:
-        """Return the kind of the cells."""
-
-    @property
-    def failed(self) -> Mapping[str, str]:
-        """Return the reasons of cells without a result, by name."""
-
-    def counted(self, by: Sequence[str]) -> Sequence[Mapping[str, Any]]:
-        """Return the rows of `summary` as plain values."""
-
-    def apart(self, between: str) -> Sequence[str]:
-        """Return the columns in whose groups a column is compared."""
-
-    def paired(
-        self, between: str, by: Sequence[str] = ()
-    ) -> Sequence[tuple[tuple[Any, ...], Pairs]]:
-        """Return the rows of `differences` as values."""
-
-
-def page_text(result: Counted, by: Sequence[str]) -> str:
+def page_text(result: StudyRecord, by: Sequence[str]) -> str:
     """Return the page; the same study gives the same text.
 
     Args:
@@ -91,7 +61,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
     return visible(text)
 
 
-def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:
+def _differences(result: StudyRecord) -> Iterator[tuple[str, str, Pairs]]:
     """Yield column, group and pairs of each comparison: overall, and in each task or scenario."""
     table = result.kind.table
     whole = table.groups[0]

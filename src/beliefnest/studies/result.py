@@ -12,7 +12,7 @@ from beliefnest.studies.archive import write_zip
 from beliefnest.studies.bundling import bundled
 from beliefnest.studies.counting import count_rows
 from beliefnest.studies.fits import Family
-from beliefnest.studies.methods import MethodsForm, facts_of, methods_text
+from beliefnest.studies.methods import MethodsForm, methods_text
 from beliefnest.studies.plainframe import Typed, plain_frame, write_csv, write_parquet
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
@@ -266,7 +266,7 @@ class StudyResult(StudyRecord):
         Raises:
             InputError: The format does not exist, or a file of the folder is damaged.
         """
-        return methods_text(facts_of(self.whole), form)
+        return methods_text(self.whole, form)
 
     def reproduce(self, jobs: int = 1, *, trust: bool = False) -> Reproduction:
         """Play all cells with a result again, without any model, and compare all rows.

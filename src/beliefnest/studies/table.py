@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
@@ -10,7 +10,10 @@ from beliefnest.llm.failures import NOT_ASKED
 from beliefnest.plan.scenario_cells import LABEL, LIST
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.allocation import PARTICIPANT
-from beliefnest.studies.copies import CellResults, rows_with_copies
+from beliefnest.studies.copies import rows_with_copies
+
+if TYPE_CHECKING:
+    from beliefnest.studies.study_folder import StudyFolder
 
 _FAILED = "error"
 _NO_ANSWER = "no_answer"
@@ -102,7 +105,7 @@ class Table(msgspec.Struct, frozen=True):
         """Names of the columns that the page shows after `first` and those of variations."""
         return tuple(each.name for each in self.columns if each.shown)
 
-    def rows(self, folder: CellResults, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    def rows(self, folder: "StudyFolder", plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield the rows of the cells of a plan, see `rows_with_copies`."""
         varied = variation_columns(plan)
 
