@@ -144,12 +144,11 @@ def put_block(
 def check_holds_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:
     """Raise WorldError if a neighbour of a block may come off together with it."""
     for side in _SIDES:
-        other = plus(place, side)
-        name = registry.name(state_at(other))
-        if name.endswith(_NEEDS_HOLDER):
+        # The message does not name what the agent may not see.
+        if registry.name(state_at(plus(place, side))).endswith(_NEEDS_HOLDER):
             raise WorldError(
-                f"the block at {place} cannot be mined in the scripted world: the {name} at "
-                f'{other} may come off with it; open the nest with world="embedded" for that'
+                f"the block at {place} cannot be mined in the scripted world: what it may hold, "
+                'such as a lever, would come off; open the nest with world="embedded" for that'
             )
 
 

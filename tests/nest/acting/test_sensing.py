@@ -120,6 +120,54 @@ def test_a_hand_does_not_reach_through_walls_into_what_is_not_perceived(use: str
     assert len({told(kind) for kind in kinds}) == 1
 
 
+@pytest.mark.parametrize(
+    ("use", "kinds"),
+    [
+        ("mineBlock(bot, new Vec3(2, 1, 5), 'stone')", ("dirt", "barrel")),
+        ("turnOnLever(bot, new Vec3(2, 1, 5))", ("dirt", "barrel")),
+        ("pressButton(bot, new Vec3(2, 1, 5))", ("dirt", "barrel")),
+        ("placeItem(bot, 'dirt', new Vec3(2, 1, 5))", ("dirt", "barrel")),
+        ("mineBlock(bot, new Vec3(2, 1, 4), 'dirt')", ("lever[face=wall]", "wall_torch")),
+    ],
+    ids=["mine", "switch", "press", "put", "what it holds"],
+)
+def test_an_error_names_no_block_behind_the_back(use: str, kinds: tuple[str, ...]) -> None:
+    def told(hidden: str) -> tuple[object, ...]:
+        ann = {"position": [2.5, 1, 2.5], "facing": "north", "inventory": {"dirt": 1}}
+        at = {"block": "dirt", "at": [2, 1, 4]} if "4)" in use else FLOOR
+        scenario = bn.Scenario.from_mapping(
+            {
+                **ROOM,
+                "blocks": [FLOOR, at, {"block": hidden, "at": [2, 1, 5]}],
+                "agents": {**ROOM["agents"], "ann": ann},
+                "perception": {"field_of_view": 90},
+            }
+        )
+        with bn.Nest.open(scenario, world="scripted") as nest:
+            result = nest["/"].run("ann", f"await {use}", 100, "percepts")
+            assert not result.ok
+            return str(result.error), result.ticks
+
+    assert len({told(kind) for kind in kinds}) == 1
+
+
+def test_a_body_that_is_seen_no_more_stays_where_it_was_seen() -> None:
+    wall = {"block": "bricks", "fill": [[WALL_X, 1, 0], [WALL_X, 3, 4]]}
+    agents = {**ROOM["agents"], "bob": {"position": [3.5, 1, 5.5]}}
+    scenario = bn.Scenario.from_mapping({**ROOM, "blocks": [FLOOR, wall], "agents": agents})
+    code = """
+    const body = bot.players.bob.entity
+    console.log(Object.values(bot.entities).map(each => each.username))
+    await waitTicks(bot, 15)
+    console.log(Object.values(bot.entities).map(each => each.username))
+    console.log(body.position)
+    """
+    programs = {"ann": code, "bob": "await goToPosition(bot, new Vec3(8, 1, 1), 0)"}
+    with bn.Nest.open(scenario, world="scripted") as nest:
+        result = nest["/"].run_all(programs, 100, "percepts")["ann"]
+        assert result.log == ('["ann", "bob"]', '["ann"]', "(3.5, 1, 5.5)"), result.error
+
+
 def test_a_program_has_no_clock_of_the_machine() -> None:
     with bn.Nest.open(bn.Scenario.from_mapping(ROOM), world="scripted") as nest:
         assert nest["/"].run("ann", "console.log(typeof performance)").log == ("undefined",)
@@ -128,7 +176,7 @@ def test_a_program_has_no_clock_of_the_machine() -> None:
 def test_percepts_are_what_is_perceived() -> None:
     (first, _), ticks = read([], {}, (7.5, 1.0, 5.5), "percepts")
     assert first["told"]["players"]["bob"]["entity"] is None
-    assert list(first["told"]["entities"]) == []
+    assert [body["username"] for _, body in first["told"]["entities"]] == ["ann"]
     named = {tuple(each[1]): each[0] for each in first["blocks"] if each is not None}
     assert named[1, 0, 1] == "stone"
     assert named[WALL_X, 1, 3] == "bricks"

@@ -67,11 +67,6 @@ class BotReads:
         return tuple(sorted(self._world.agents))
 
     @property
-    def others(self) -> tuple[str, ...]:
-        """Names of the other agents that the program's agent perceives."""
-        return tuple(name for name in self._now.agents if name != self.name)
-
-    @property
     def me(self) -> AgentState:
         """State of the program's own agent."""
         return self._world.agents[self.name]
@@ -82,11 +77,7 @@ class BotReads:
 
     def pose(self, name: str) -> AgentState:
         """Return an agent's state, as last perceived."""
-        if name == self.name:
-            return self.me
-        if name in self._now.agents:
-            self._last[name] = self._now.agents[name]
-        return self._last[name]
+        return self.me if name == self.name else {**self._last, **self._now.agents}[name]
 
     def state_at(self, cell: Position) -> int | None:
         """Return the state of a block; None outside of the box, and if it is unknown."""
@@ -101,6 +92,7 @@ class BotReads:
     def _now(self) -> Sensed:
         if self._sensed is None or self._sensed[0] != self._world.now:
             self._sensed = self._world.now, self._sense()
+            self._last.update(self._sensed[1].agents)
         return self._sensed[1]
 
     def member(self, body: BotBody, name: str) -> Any:

@@ -51,9 +51,8 @@ def mine_block(hand: Hand, position: Any, name: Any) -> Doing:
     place, wanted = block_in(position), text_in(name)
     yield from walk_to_use(hand, place)
     yield 0
-    there = _name_at(hand, place)
-    if there != wanted:
-        raise SkillError(f"there is no {wanted} at {place}, but {there}. Look where it is.")
+    if _name_at(hand, place) != wanted:
+        raise hand.lacking(wanted, place, "Look where it is.")
     hand.world.mine(hand.name, place)
 
 
@@ -67,18 +66,17 @@ def place_item(hand: Hand, name: Any, position: Any) -> Doing:
     yield from walk(hand, place, hand.reach(place, beside=True), "the position")
     hand.check_touch(place, "the position")
     yield 0
+    if hand.world.state_at(place) not in Registry.load().airs:
+        raise hand.lacking("free place", place, "Choose another one.")
     hand.world.put(hand.name, item, place)
 
 
 def _is_powered(hand: Hand, place: Position, kind: str) -> bool:
     """Return True if a switch is on; raises SkillError if there is none."""
-    registry, there = Registry.load(), _name_at(hand, place)
-    if not there.endswith(kind):
+    if not _name_at(hand, place).endswith(kind):
         called = kind.strip("_")
-        raise SkillError(
-            f"there is no {called} at {place}, but {there}. Give the position of a {called}."
-        )
-    return registry.properties(hand.world.state_at(place))["powered"] == "true"
+        raise hand.lacking(called, place, f"Give the position of a {called}.")
+    return Registry.load().properties(hand.world.state_at(place))["powered"] == "true"
 
 
 def _name_at(hand: Hand, place: Position) -> str:

@@ -420,8 +420,8 @@ class JavaScriptProgram:
 
     @property
     def _entities(self) -> Any:
-        others = enumerate(self._reads.others, 1)
-        return _plain({str(number): self._body(name) for number, name in others})
+        there = filter(self._reads.is_there, self._reads.agents)
+        return _plain({str(number): self._body(name) for number, name in enumerate(there, 1)})
 
 
 _GETS: Mapping[str, Callable[[JavaScriptProgram], Any]] = {
