@@ -89,6 +89,13 @@ UNSOUND = {
         EVERY[::2],
         "a 2 and b y are right",
     ),
+    "no errors": (made(PLAIN, cell_of(b="y"), True), ["a", "b"], EVERY[1:2], "b y are"),
+    "no errors, one row each": (
+        [r for n, r in enumerate(made(PLAIN, cell_of(b="y"), True)) if n % 8 == 0],
+        ["b"],
+        EVERY[1::2],
+        "",
+    ),
     "groups of one": (
         [r for n, r in enumerate(PLAIN) if n % 8 == n // 8 % 2],
         ["a"],
@@ -141,12 +148,27 @@ def test_a_fit_that_rows_do_not_determine_says_so_and_gives_no_coefficient(name)
         assert json.loads(json.dumps(fit.plain(), allow_nan=False))["sound"] is False
 
 
+def test_a_level_without_errors_has_no_linear_estimate_without_a_variance_of_all_rows():
+    rows = made(PLAIN, cell_of(b="y"), True)
+    assert fit_rows(rows, ["b"], "gee", "gaussian").substitute is None
+    errors = [each.se for each in fit_rows(rows, ["b"], "mixed", "gaussian").terms]
+    assert errors[1] == pytest.approx(errors[2], rel=1e-6)
+    once = [row for number, row in enumerate(rows) if number % 8 == 0]
+    assert fit_rows(once, ["b"], "mixed", "gaussian").substitute is None
+
+
 @pytest.mark.parametrize(("kind", "family"), EVERY)
 def test_a_fit_that_rows_determine_is_sound(kind, family):
     fit = fit_rows(PLAIN, ["a", "b", ("a", "b")], kind, family)
     assert (fit.sound, fit.note, fit.substitute, fit.counts) == (True, "", None, ())
     assert len(fit.terms) == 6
     assert all(meaningful(each.low, each.estimate, each.high, family) for each in fit.terms)
+
+
+def test_a_regression_with_people_says_that_it_does_not_group_them():
+    people = [{**row, "participant": f"p{n % 3}"} for n, row in enumerate(PLAIN)]
+    assert "not of other people" in fit_rows(people, ["a"], "gee", "binomial").method
+    assert "people" not in fit_rows(PLAIN, ["a"], "gee", "binomial").method
 
 
 def test_quasi_separation_that_no_single_level_shows_is_found():

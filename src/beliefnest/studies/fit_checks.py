@@ -83,6 +83,16 @@ def certainty_fault(right: Floats, design: Floats) -> str:
     return "the effects explain every answer, so that there is no error to estimate"
 
 
+def one_sided_level(rows: Sequence[Row], effects: Sequence[ColumnNames], right: Floats) -> str:
+    """Return which level, or combination of levels, has right or wrong rows only; empty: none."""
+    for names, values, own in _cells(rows, effects):
+        sides = {float(right[number]) for number in own}
+        if len(sides) == 1:
+            side = "right" if sides == {1.0} else "wrong"
+            return f"all {counted(len(own), 'row')} with {_told(names, values)} are {side}"
+    return ""
+
+
 def separation_fault(
     rows: Sequence[Row],
     effects: Sequence[ColumnNames],
@@ -99,14 +109,8 @@ def separation_fault(
     endless = _endless(right, design)
     if not endless:
         return ""
-    for names, values, own in _cells(rows, effects):
-        sides = {float(right[number]) for number in own}
-        if len(sides) == 1:
-            side = "right" if sides == {1.0} else "wrong"
-            return (
-                f"all {counted(len(own), 'row')} with {_told(names, values)} are {side} "
-                "(separation), so that its log odds have no finite estimate"
-            )
+    if level := one_sided_level(rows, effects, right):
+        return f"{level} (separation), so that its log odds have no finite estimate"
     return (
         "the levels of the effects predict some rows without an error (quasi-separation), so that "
         f"the log odds of {', '.join(terms[number] for number in endless)} have no finite estimate"

@@ -9,12 +9,14 @@ import msgspec
 import numpy as np
 
 from beliefnest.errors import InputError
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.counting import Row, count_rows, judged_rows
 from beliefnest.studies.fit_checks import (
     FEWEST,
     ColumnNames,
     certainty_fault,
     level_of,
+    one_sided_level,
     rows_fault,
     separation_fault,
     support_fault,
@@ -204,7 +206,8 @@ def fit_rows(
         rows=len(chosen),
         groups=len({row["variation"] for row in chosen}),
         correlation=fitted.correlation if sound else None,
-        method=_method(kind, family, fitted.told or "exchangeable working correlation"),
+        method=_method(kind, family, fitted.told or "exchangeable working correlation")
+        + (_PEOPLE if any(row.get(PARTICIPANT) for row in chosen) else ""),
         raw=fitted.raw,
     )
 
@@ -243,12 +246,15 @@ def _fitted(
     right = np.array([bool(row["ok"]) for row in rows], dtype=float)
     groups = _codes([row["variation"] for row in rows])
     thin = support_fault(rows, effects, design, groups, terms)
-    endless = ""
+    endless, level = "", ""
     if not thin and family == "gaussian":
-        endless = certainty_fault(right, design)
+        endless, level = certainty_fault(right, design), one_sided_level(rows, effects, right)
     elif not thin:
         endless = separation_fault(rows, effects, right, design, terms)
     fault = thin or endless
+    if level and kind == "gee":
+        # Its robust variance would be 0, however few its rows; a mixed model has one for all rows.
+        fault = fault or f"{level}, so that there is no error of theirs to estimate"
     if not fault and kind == "mixed" and int(groups.max()) + 1 == len(rows):
         fault = (
             "each variation has one judged row, so that the variance between variations cannot be "
@@ -260,7 +266,8 @@ def _fitted(
         if not fitted.fault:
             return fitted, terms, None
         fault = fitted.fault
-    other = _substitute(right, design, groups, terms, kind, family, solid=not (thin or endless))
+    solid = not (thin or endless or level)
+    other = _substitute(right, design, groups, terms, kind, family, solid=solid)
     return Fit.failed(fault), (), other
 
 
@@ -297,7 +304,7 @@ def _substitute(
         terms: Names of the coefficients.
         kind: Kind of the regression that is not sound.
         family: Its family.
-        solid: True if rows of enough variations have each level, and none is separated.
+        solid: True if rows of enough variations have each level, and none is right or wrong only.
     """
     if int(groups.max()) + 1 < FEWEST:
         return None
@@ -325,6 +332,11 @@ _FIRTH = (
 _BOOTSTRAP = (
     "linear regression by least squares with percentile intervals of the cluster bootstrap over "
     "variations (2,000 draws; Field and Welsh, 2007)"
+)
+
+
+_PEOPLE = (
+    "; participants are no groups, so that the errors tell of other scenes and not of other people"
 )
 
 
