@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from tests.shared_worlds import WORLDS
 
 from beliefnest.world.frames import Frame, Snapshot
@@ -51,9 +52,15 @@ def world(request: pytest.FixtureRequest) -> Iterator[World]:
 class Played:
     """Results of programs: return values, events, and the state of the world afterwards."""
 
-    def __init__(self, world: World, programs: dict[str, str], further: int = 0) -> None:
+    def __init__(
+        self,
+        world: World,
+        programs: dict[str, str],
+        further: int = 0,
+        begun: Snapshot | None = None,
+    ) -> None:
         frames: list[Frame] = []
-        body = world.open_body("/", "seed", start(), frames.append)
+        body = world.open_body("/", "seed", begun or start(), frames.append)
         self.results = body.run(programs, 600)
         body.step(further)
         self.there = body.snapshot()
@@ -248,3 +255,42 @@ def test_targets_of_calls_are_noted_by_every_world_alike(world: World) -> None:
     aims = Played(world, {"sally": program}).results["sally"].aims
     expected = [(call.partition("(")[0], *target) for call, *target in calls]
     assert [(aim.call, aim.place, aim.agent, aim.uses) for aim in aims] == expected
+
+
+def test_a_chest_takes_and_gives_as_much_as_there_is_and_room_for(world: World) -> None:
+    chest, full = (4, 1, 4), (1, 1, 1)
+    begun = start()
+    blocks = begun.blocks.draft()
+    blocks[BOX.index(chest)] = blocks[BOX.index(full)] = Registry.load().state_id("chest")
+    contents = {chest: {"apple": 2}, full: {"stone": 26 * 64, "dirt": 63}}
+    begun = replace(begun, blocks=blocks.terrain(), containers=contents)
+    programs = [
+        f"await depositItemIntoChest(bot, new Vec3{chest}, {{dirt: 5, diamond: 1}})",
+        f"await getItemFromChest(bot, new Vec3{chest}, {{dirt: 9, apple: 3}})",
+        f"await depositItemIntoChest(bot, new Vec3{full}, {{dirt: 2, apple: 1}})",
+        f"await depositItemIntoChest(bot, new Vec3{full}, {{apple: 1}})",
+    ]
+    code = "\n".join(f"try {{ {each} }} catch (e) {{ console.log(e.name) }}" for each in programs)
+    played = Played(world, {"sally": code}, begun=begun)
+    assert played.results["sally"].log == ("SkillError",) * 4
+    assert played.held("sally") == {"dirt": 1, "apple": 2}
+    held = {place: dict(items) for place, items in played.there.containers.items()}
+    assert held == {chest: {}, full: {"stone": 26 * 64, "dirt": 64}}
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        f"await turnOnLever(bot, new Vec3{BUTTON})",
+        f"await mineBlock(bot, new Vec3{BUTTON}, 'dirt')",
+        f"await openDoor(bot, new Vec3{BUTTON})",
+        f"await writeSign(bot, new Vec3{BUTTON}, 'hi')",
+        f"await placeItem(bot, 'dirt', new Vec3{BUTTON})",
+        "await giveItemToOther(bot, 'anne', 'dirt', 3)",
+    ],
+    ids=["lever", "mine", "door", "sign", "put", "give"],
+)
+def test_nobody_walks_for_what_cannot_be_done(world: World, program: str) -> None:
+    played = Played(world, {"sally": program})
+    assert played.results["sally"].error is not None
+    assert played.there.agents["sally"].position == SALLY

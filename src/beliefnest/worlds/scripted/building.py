@@ -5,6 +5,7 @@ from typing import Any
 
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
+from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.hand import (
     Doing,
     Hand,
@@ -23,12 +24,12 @@ def switch_lever(*, powered: bool) -> Callable[..., Doing]:
 
     def switch(hand: Hand, position: Any) -> Doing:
         place = block_in(position)
-        yield from walk_to_use(hand, place)
-        if _is_powered(hand, place, "lever") is powered:
+        yield from walk_to_use(hand, place, "lever", "lever".__eq__)
+        if _is_powered(hand, place) is powered:
             return
         yield 0
         # Another agent may have switched it in this very tick.
-        if _is_powered(hand, place, "lever") is not powered:
+        if _is_powered(hand, place) is not powered:
             hand.world.use_lever(hand.name, place, powered=powered)
 
     return switch
@@ -37,10 +38,10 @@ def switch_lever(*, powered: bool) -> Callable[..., Doing]:
 def press_button(hand: Hand, position: Any) -> Doing:
     """Press a button; if it is pressed already, first wait until it comes out."""
     place = block_in(position)
-    yield from walk_to_use(hand, place)
+    yield from walk_to_use(hand, place, "button", lambda name: name.endswith("_button"))
     yield 0
     for _ in range(_MOST_WAITED):
-        if not _is_powered(hand, place, "_button"):
+        if not _is_powered(hand, place):
             break
         yield 0
     hand.world.press_button(hand.name, place)
@@ -49,9 +50,10 @@ def press_button(hand: Hand, position: Any) -> Doing:
 def mine_block(hand: Hand, position: Any, name: Any) -> Doing:
     """Break a block and take its drops."""
     place, wanted = block_in(position), text_in(name)
-    yield from walk_to_use(hand, place)
+    yield from walk_to_use(hand, place, wanted, wanted.__eq__, "Look where it is.")
     yield 0
-    if _name_at(hand, place) != wanted:
+    # Another agent may have replaced it in this very tick.
+    if hand.ground().name_at(place) != wanted:
         raise hand.lacking(wanted, place, "Look where it is.")
     hand.world.mine(hand.name, place)
 
@@ -59,25 +61,24 @@ def mine_block(hand: Hand, position: Any, name: Any) -> Doing:
 def place_item(hand: Hand, name: Any, position: Any) -> Doing:
     """Place a block of the inventory, from a position next to it."""
     place, item = block_in(position), text_in(name)
-    if not hand.world.agents[hand.name].inventory.get(item, 0):
+    if not hand.inventory.get(item, 0):
         raise SkillError(
             f"the inventory holds no {item}; it holds: {hand.contents}. Get some first."
         )
+    _check_free(hand, hand.known(), place)
     yield from walk(hand, place, hand.reach(place, beside=True), "the position")
     hand.check_touch(place, "the position")
     yield 0
-    if hand.world.state_at(place) not in Registry.load().airs:
-        raise hand.lacking("free place", place, "Choose another one.")
+    _check_free(hand, hand.ground(), place)
     hand.world.put(hand.name, item, place)
 
 
-def _is_powered(hand: Hand, place: Position, kind: str) -> bool:
-    """Return True if a switch is on; raises SkillError if there is none."""
-    if not _name_at(hand, place).endswith(kind):
-        called = kind.strip("_")
-        raise hand.lacking(called, place, f"Give the position of a {called}.")
-    return Registry.load().properties(hand.world.state_at(place))["powered"] == "true"
+def _check_free(hand: Hand, ground: Ground, place: Position) -> None:
+    """Raise SkillError if a ground has a block at a place."""
+    if not (ground.name_at(place) or "air").endswith("air"):
+        raise hand.lacking("free place", place, "Choose another one.")
 
 
-def _name_at(hand: Hand, place: Position) -> str:
-    return Registry.load().name(hand.world.state_at(place))
+def _is_powered(hand: Hand, place: Position) -> bool:
+    """Return True if a switch is on."""
+    return Registry.load().properties(hand.world.state_at(place)).get("powered") == "true"

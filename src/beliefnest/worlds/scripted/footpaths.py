@@ -14,7 +14,6 @@ from beliefnest.geometry.bodies import Doorways
 from beliefnest.geometry.free_lines import can_touch, can_use, eye_in
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import AIR, Registry
-from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Point, Position, block_at, feet_in
 from beliefnest.worlds.scripted.footing import Footing, WalkWindow
@@ -120,17 +119,10 @@ class Ground:
         is_on_it = feet[1] - y > _TOUCH and self._footing.is_obstacle((x, y, z))
         return (x, y + is_on_it, z)
 
-    def may_hold(self, place: Position) -> bool:
-        """Return True if a position has a container or is unknown."""
-        if place not in self._box:
-            return False
-        state = int(self._blocks[self._box.index(place)])
-        return state < 0 or self._registry.is_container(self._registry.name(state))
-
-    def is_sign(self, place: Position) -> bool | None:
-        """Return True if there is a sign at a position; None if the position is unknown."""
+    def name_at(self, place: Position) -> str | None:
+        """Return the name of the block at a position, air outside of the box; None if unknown."""
         state = int(self._blocks[self._box.index(place)]) if place in self._box else AIR
-        return None if state < 0 else is_sign(self._registry.name(state))
+        return None if state < 0 else self._registry.name(state)
 
     @cached_property
     def with_doors_opened(self) -> "Ground":

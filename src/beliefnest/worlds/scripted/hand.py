@@ -17,7 +17,15 @@ from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
 from beliefnest.world.event_words import Announcement
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.texts import MOST_UTTERANCES, quoted
-from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position, block_at, feet_in
+from beliefnest.world.values import (
+    EYE_HEIGHT,
+    AgentState,
+    Items,
+    Point,
+    Position,
+    block_at,
+    feet_in,
+)
 from beliefnest.worlds.protocol import NO_WAY
 from beliefnest.worlds.scripted.footpaths import Ground, InReach, Near, WalkGoal
 from beliefnest.worlds.scripted.world import ScriptedWorld
@@ -100,10 +108,14 @@ class Hand(msgspec.Struct, frozen=True):
         raise SkillError(f"{what} at {place} cannot be reached from here: {fault}")
 
     @property
+    def inventory(self) -> Items:
+        """Items that it carries."""
+        return self.world.agent(self.name).inventory
+
+    @property
     def contents(self) -> str:
         """Items that it carries, for messages."""
-        inventory = self.world.agents[self.name].inventory
-        return ", ".join(f"{count} {name}" for name, count in inventory.items()) or "nothing"
+        return ", ".join(f"{count} {name}" for name, count in self.inventory.items()) or "nothing"
 
     def lacking(self, called: str, place: Position, advice: str) -> SkillError:
         """Return the error that there is no such block at a place.
@@ -153,10 +165,27 @@ class Hand(msgspec.Struct, frozen=True):
         return isinstance(goal, Near) and goal.is_met(block_at(self.feet))
 
 
-def walk_to_use(hand: Hand, place: Position) -> Doing:
-    """Walk to where a block can be used, as far as the agent knows; fail if its body cannot."""
+def walk_to_use(
+    hand: Hand, place: Position, called: str, is_such: Callable[[str], bool], advice: str = ""
+) -> Doing:
+    """Walk to where a block can be used, as far as the agent knows; fail if its body cannot.
+
+    Args:
+        hand: The agent.
+        place: Position of the block.
+        called: What the block is called.
+        is_such: Returns True for names of such blocks. It fails at once if the agent knows that
+            another block is there, and on arrival if it turns out so.
+        advice: End of the message then.
+    """
+    advice = advice or f"Give the position of a {called}."
+    name = hand.known().name_at(place)
+    if name is not None and not is_such(name):
+        raise hand.lacking(called, place, advice)
     yield from walk(hand, place, hand.reach(place), "the block")
     hand.check_touch(place, "the block")
+    if not is_such(hand.ground().name_at(place) or ""):
+        raise hand.lacking(called, place, advice)
 
 
 class Doors(msgspec.Struct, frozen=True):

@@ -8,17 +8,19 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from beliefnest.errors import InputError, WorldError
+from beliefnest.errors import InputError
 from beliefnest.skills.calls import Call
 from beliefnest.world.circuits import Circuits
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_door, is_open
 from beliefnest.world.double_chests import CHESTS, StateAt, halves_at
+from beliefnest.world.limits import AGENT_SLOTS, WORN_SLOTS, slots_at
 from beliefnest.world.registry import Registry
-from beliefnest.world.signs import sign_fault
+from beliefnest.world.signs import is_sign, sign_fault
 from beliefnest.world.texts import MOST_UTTERANCES, quoted
-from beliefnest.world.values import EYE_HEIGHT, Position, block_at
+from beliefnest.world.values import EYE_HEIGHT, Items, Position, block_at
 from beliefnest.worlds.scripted.building import mine_block, place_item, press_button, switch_lever
+from beliefnest.worlds.scripted.facts import sum_of
 from beliefnest.worlds.scripted.footpaths import Near
 from beliefnest.worlds.scripted.hand import (
     Doing,
@@ -37,7 +39,7 @@ from beliefnest.worlds.scripted.hand import (
 
 _NEAR = 2.0
 _CHEST = "Give the position of a chest or barrel."
-_SIGN = "Give the position of a sign."
+_CONTAINERS = (*CHESTS, "barrel")
 
 
 def _go_to_position(hand: Hand, position: Any, dist: Any = 2, doors: Any = None) -> Doing:
@@ -54,25 +56,49 @@ def _get_item_from_chest(hand: Hand, position: Any, items: Any) -> Doing:
     place, wanted = block_in(position), items_in(items)
     yield from _open(hand, place)
     yield 0
-    there = hand.world.contents(place)
-    moved = {name: min(n, there.get(name, 0)) for name, n in wanted.items() if there.get(name, 0)}
+    there, own = hand.world.contents(place), hand.inventory
+    moved = _movable(wanted, there, own, AGENT_SLOTS + WORN_SLOTS)
     if moved:
         hand.world.withdraw(hand.name, place, moved)
-    missing = [
-        f"{n} {name} asked for from the chest at {place}, it holds {there.get(name, 0)}; "
-        f"{moved.get(name, 0)} taken"
-        for name, n in wanted.items()
-        if there.get(name, 0) < n
-    ]
-    if missing:
-        raise SkillError(f"{'; '.join(missing)}. Ask for what is there, or look elsewhere.")
+    what = f"asked for from the chest at {place}, it holds"
+    _check_moved(wanted, moved, there, what, "taken. Ask for what is there, or look elsewhere.")
 
 
 def _deposit_item_into_chest(hand: Hand, position: Any, items: Any) -> Doing:
     place, wanted = block_in(position), items_in(items)
     yield from _open(hand, place)
     yield 0
-    hand.world.deposit(hand.name, place, wanted)
+    world, own = hand.world, hand.inventory
+    slots = slots_at(Registry.load(), world.state_at, place)
+    moved = _movable(wanted, own, world.contents(place), slots)
+    if moved:
+        world.deposit(hand.name, place, moved)
+    what = f"to be put into the chest at {place}, the inventory holds"
+    _check_moved(wanted, moved, own, what, "put in. Get more first, or put in less.")
+
+
+def _movable(wanted: Items, source: Items, target: Items, slots: int) -> dict[str, int]:
+    """Return as much of wanted items as the source has and the slots of the target can hold."""
+    stack_of = Registry.load().item_stack
+    moved: dict[str, int] = {}
+    for name, count in wanted.items():
+        held = sum_of(target, moved)
+        others = sum(-(-n // stack_of(other)) for other, n in held.items() if other != name)
+        room = (slots - others) * stack_of(name) - held.get(name, 0)
+        if (most := min(count, source.get(name, 0), room)) > 0:
+            moved[name] = most
+    return moved
+
+
+def _check_moved(wanted: Items, moved: Items, source: Items, what: str, done: str) -> None:
+    """Raise SkillError if less than the wanted items was moved."""
+    missing = [
+        f"{n} {name} {what} {source.get(name, 0)}; {moved.get(name, 0)}"
+        for name, n in wanted.items()
+        if moved.get(name, 0) < n
+    ]
+    if missing:
+        raise SkillError(f"{'; '.join(missing)} {done}")
 
 
 def _open_container(hand: Hand, position: Any) -> Doing:
@@ -88,12 +114,9 @@ def _open_from_here(hand: Hand, position: Any) -> Doing:
 def _use_door(to_open: bool) -> Callable[..., Doing]:
     def use(hand: Hand, position: Any) -> Doing:
         place = block_in(position)
-        yield from walk_to_use(hand, place)
-        there = hand.world.state_at(place)
-        if is_open(Registry.load(), there) is to_open:
+        yield from walk_to_use(hand, place, "door", is_door)
+        if is_open(Registry.load(), hand.world.state_at(place)) is to_open:
             return
-        if not is_door(Registry.load().name(there)):
-            raise hand.lacking("door", place, "Give the position of a door.")
         yield 0
         hand.world.use_door(hand.name, place, open=to_open)
 
@@ -108,9 +131,7 @@ def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doin
         raise SkillError(f"text must be a text; it is {quoted(text)}")
     if fault := sign_fault(text):
         raise SkillError(f"text is {fault}")
-    yield from walk_to_use(hand, place)
-    if not hand.ground().is_sign(place):
-        raise hand.lacking("sign", place, _SIGN)
+    yield from walk_to_use(hand, place, "sign", is_sign)
     yield 0
     hand.world.write_sign(hand.name, place, text, sign_claims)
 
@@ -130,11 +151,12 @@ def _look_at(hand: Hand, position: Any) -> Doing:
 
 def _read_sign(hand: Hand, position: Any) -> Doing:
     place = block_in(position)
-    if hand.known().is_sign(place) is False:
-        raise hand.lacking("sign", place, _SIGN)
+    name = hand.known().name_at(place)
+    if name is not None and not is_sign(name):
+        raise hand.lacking("sign", place, "Give the position of a sign.")
     yield from _look_at(hand, tuple(part + 0.5 for part in place))
     yield 0
-    if not hand.known().is_sign(place):
+    if not is_sign(hand.known().name_at(place) or ""):
         raise SkillError(f"no sign is to be seen at {place}. Go nearer, or look somewhere else.")
     return hand.signs().get(place, "")
 
@@ -206,12 +228,15 @@ def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
         raise SkillError(
             f"{quoted(name)} is no agent that is known to be here; it is {sorted(others)}"
         )
+    given = items_in({text_in(item): count})
+    if any(hand.inventory.get(kind, 0) < n for kind, n in given.items()):
+        raise SkillError(f"cannot give {count} {item}: the inventory holds {hand.contents}.")
     where = others[name].position
     yield from walk(hand, where, Near(block_at(where), _NEAR), name)
     yield 0
     if not hand.can_throw_to(name):
         raise SkillError(f"{name} cannot be given anything from here: something solid is between")
-    hand.world.give(hand.name, name, items_in({text_in(item): count}))
+    hand.world.give(hand.name, name, given)
 
 
 def _wait_ticks(hand: Hand, ticks: Any) -> Doing:
@@ -275,15 +300,11 @@ def perform(hand: Hand, call: Call) -> Doing:
 
 def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
     if walks:
-        if not hand.known().may_hold(place):
-            raise hand.lacking("chest", place, _CHEST)
-        yield from walk_to_use(hand, place)
+        yield from walk_to_use(hand, place, "chest", _CONTAINERS.__contains__, _CHEST)
     yield 0
     hand.check_touch(place, "the container")
-    try:
-        hand.world.contents(place)
-    except WorldError:
-        raise hand.lacking("chest", place, _CHEST) from None
+    if hand.ground().name_at(place) not in _CONTAINERS:
+        raise hand.lacking("chest", place, _CHEST)
     if above := _on_lid(hand.world.state_at, place):
         raise SkillError(
             f"the chest at {place} cannot be opened: {above} lies on its lid. Remove it first."
