@@ -307,6 +307,25 @@ def test_metrics_are_about_all_epochs(run, tmp_path):
     assert run(MODEL + EPOCHS, tmp_path) == ["desires 27 True", "beliefs 27 True", "True", "True"]
 
 
+SCENES = """
+from inspect_ai.scorer import SampleScore, Score
+from beliefnest.inspect.metrics import stderr_of_epochs, stderr_of_scenes
+
+def scores(scenes):
+    return [
+        SampleScore(score=Score(value=value), sample_id=str(n), sample_metadata={"cluster": scene})
+        for n, (scene, value) in enumerate(scenes)
+    ]
+
+for error in (stderr_of_scenes(), stderr_of_epochs()):
+    print(error(scores([("a", 1), ("a", 0), ("a", 1)])), error(scores([("a", 1), ("b", 0)])))
+"""
+
+
+def test_samples_of_one_scene_have_no_standard_error(run, tmp_path):
+    assert run(SCENES, tmp_path) == ["nan 0.5"] * 2
+
+
 CHOICES = """
 name: {name}
 box: [[0, 0, 0], [6, 3, 6]]

@@ -15,7 +15,6 @@ from inspect_ai.scorer import (
     accuracy,
     grouped,
     metric,
-    stderr,
     value_to_float,
 )
 
@@ -30,7 +29,7 @@ CLUSTER = "cluster"
 def metrics_by(key: str) -> list[Metric | dict[str, list[Metric]]]:
     """Return the metrics of right answers, and accuracy grouped by a key of the samples."""
     by_group = grouped(accuracy(), key, all=False)
-    return [accuracy(), stderr(cluster=CLUSTER), interval(), chance(), not_answered(), by_group]
+    return [accuracy(), stderr_of_scenes(), interval(), chance(), not_answered(), by_group]
 
 
 def _clusters(scores: Sequence[SampleScore]) -> list[list[float]]:
@@ -92,18 +91,35 @@ def mean_of_epochs() -> Metric:
     return value
 
 
+def _error(scores: list[SampleScore]) -> float:
+    """Return the standard error of the mean, clustered by scene; nan with fewer than two."""
+    clusters = _clusters(scores)
+    if len(clusters) < 2:
+        return math.nan
+    middle = np.mean([one for cluster in clusters for one in cluster])
+    squares = sum(float(sum(one - middle for one in cluster)) ** 2 for cluster in clusters)
+    count = sum(map(len, clusters))
+    return math.sqrt(squares * len(clusters) / (len(clusters) - 1)) / count
+
+
+@metric(name="stderr")
+def stderr_of_scenes() -> Metric:
+    """Compute the standard error of the accuracy. Inspect's own one is 0 with a single scene."""
+
+    # Inspect marks the function, and so needs one for each metric.
+    def value(scores: list[SampleScore]) -> float:
+        return _error(scores)
+
+    return value
+
+
 @metric(name="stderr", scores="unreduced")
 def stderr_of_epochs() -> Metric:
-    """Compute the standard error of the mean, clustered by scene; nan with fewer than two."""
+    """Compute the standard error of the mean over all epochs of all samples."""
 
+    # Inspect marks the function, and so needs one for each metric.
     def value(scores: list[SampleScore]) -> float:
-        clusters = _clusters(scores)
-        if len(clusters) < 2:
-            return math.nan
-        middle = np.mean([one for cluster in clusters for one in cluster])
-        squares = sum(float(sum(one - middle for one in cluster)) ** 2 for cluster in clusters)
-        count = sum(map(len, clusters))
-        return math.sqrt(squares * len(clusters) / (len(clusters) - 1)) / count
+        return _error(scores)
 
     return value
 
