@@ -21,7 +21,7 @@ CHEST = (9, 1, 2)
 TAKE = f"await getItemFromChest(bot, new Vec3{CHEST}, {{ diamond: 1 }})"
 
 
-def kitchen(store=None, perception=None, further=()):
+def kitchen(store=None, perception=None, further=(), knows=(CHEST,)):
     """Two rooms with a doorway between; Anne knows of the diamond in the chest of the second."""
     blocks = {(x, 0, z): "stone" for x in range(12) for z in range(5)}
     for z in (0, 1, 3, 4):
@@ -32,9 +32,8 @@ def kitchen(store=None, perception=None, further=()):
         agents={"anne": (1.5, 1, 0.5), "bob": (7.5, 1, 2.5), **dict(further)},
         containers={CHEST: {"diamond": 1}},
     )
-    known = bn.InitialBelief(
-        ("anne",), containers={CHEST: ({"diamond": 1}, True)}, agents={"bob": (7.5, 1, 2.5)}
-    )
+    contents = {place: ({"diamond": 1}, True) for place in knows}
+    known = bn.InitialBelief(("anne",), containers=contents, agents={"bob": (7.5, 1, 2.5)})
     return bn.Nest(
         world,
         perception=perception,
@@ -528,3 +527,66 @@ def test_a_failing_candidate_is_named_once():
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             nest["/anne"].imagine(0, actors={"bob": {"fetch": TAKE, "idle": ""}}, n=4)
+
+
+HIDDEN, BOX = (6, 1, 0), (4, 1, 3)
+
+
+def _pass_on(world):
+    with world.tick():
+        world.withdraw("bob", BOX, {"apple": 1})
+        world.deposit("carl", BOX, {"bread": 1})
+
+
+def _look_twice(world):
+    world.open("anne", BOX)
+    world.withdraw("bob", BOX, {"apple": 1})
+    world.open("anne", BOX)
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        lambda world: world.withdraw("bob", BOX, {"apple": 1}),
+        lambda world: world.withdraw("bob", HIDDEN, {"apple": 1}),
+        lambda world: world.deposit("carl", HIDDEN, {"bread": 1}),
+        lambda world: world.use_lever("bob", (6, 1, 4), powered=True),
+        lambda world: world.deposit("anne", BOX, {"egg": 1}),
+        _pass_on,
+        _look_twice,
+    ],
+    ids=["take", "take unseen", "put unseen", "switch unseen", "put", "pass on", "look twice"],
+)
+def test_what_others_and_the_owner_do_with_the_unknown_agrees(act):
+    beams = {(5, y, z): "bricks" for y in (1, 2) for z in (0, 1, 3, 4)}
+    world = bn.ScriptedWorld(
+        box=((0, 0, 0), (8, 3, 4)),
+        blocks={(x, 0, z): "stone" for x in range(9) for z in range(5)}
+        | beams
+        | {(6, 1, 4): "lever[face=floor]"},
+        agents={
+            "anne": (0.5, 1, 2.5),
+            "bob": (6.5, 1, 2.5),
+            "carl": (3.5, 1, 2.5),
+            "dora": (1.5, 1, 0.5),
+        },
+        containers={BOX: {"apple": 1}, HIDDEN: {"apple": 1}},
+        inventories={"carl": {"bread": 1}, "anne": {"egg": 1}},
+    )
+    with bn.Nest(world, static_blocks=["stone"]) as nest:
+        world.step(2)
+        act(world)
+        world.step(2)
+        imagined = nest["/anne"].imagine(since=0, actors={"dora": {"idle": ""}}, n=1)
+        assert imagined.impossible is None
+
+
+def test_contents_that_were_learnt_are_evidence_from_then_on():
+    with kitchen(knows=()) as nest:
+        nest.scripted_world.open("anne", CHEST)
+        look_into_chest(nest, is_taken=True)
+        later = f"await waitTicks(bot, 2); {TAKE}"
+        imagined = nest["/anne"].imagine(
+            since=0, actors={"bob": {"took it": later, "idle": ""}}, n=10
+        )
+        assert imagined.by_candidate("bob") == {"took it": 1, "idle": 0}

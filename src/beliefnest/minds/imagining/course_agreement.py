@@ -40,7 +40,6 @@ class Witness(msgspec.Struct, frozen=True, eq=False):
         agents: The agents in question.
         ignored: Flat cells of blocks that are drawn and not compared.
         ignored_contents: Containers whose contents are drawn and not compared.
-        unknown_contents: Containers whose contents it did not know at the start of courses.
         items: Dropped items at the start of courses.
         box: The part of space.
         sight: Rules of sight.
@@ -52,7 +51,6 @@ class Witness(msgspec.Struct, frozen=True, eq=False):
     agents: Collection[str]
     ignored: frozenset[int]
     ignored_contents: frozenset[Position]
-    unknown_contents: frozenset[Position]
     items: Sequence[DroppedItem]
     box: Box
     sight: Sight
@@ -180,9 +178,7 @@ class Agreement:
         for place, items in percept.contents.items():
             if place in witness.ignored_contents:
                 continue
-            if place in witness.unknown_contents and place not in course.touched:
-                continue
-            if glimpse.containers.get(place, {}) != items:
+            if place in course.known and glimpse.containers.get(place, {}) != items:
                 return False
         return True
 

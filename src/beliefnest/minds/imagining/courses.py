@@ -5,6 +5,7 @@ their perceived actions. A course is a function of its start and its seeds, so i
 up to any tick.
 """
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -83,12 +84,16 @@ class CoursePlan:
         percepts: Percepts of the observer, oldest first; they contain the actions of other agents.
         speech_ticks: Duration of an utterance in ticks.
         starts: Starts of courses, by drawn edits.
+        known: Containers whose contents the observer knew at the start, or which are drawn.
+        is_unseen: Returns True for places whose block the observer never saw.
     """
 
     agents: tuple[str, ...]
     percepts: Sequence[Percept]
     speech_ticks: int
     starts: Callable[[tuple[int, ...]], Snapshot]
+    known: frozenset[Position]
+    is_unseen: Callable[[Position], bool]
 
     @cached_property
     def grounds(self) -> Grounds:
@@ -153,7 +158,8 @@ class Course:
 
     Attributes:
         entries: What has happened so far, without quiet ticks.
-        touched: Containers whose contents changed.
+        known: Containers whose contents are compared: those known at the start, those that agents
+            in question have changed since, and those of which the observer has learnt otherwise.
         contradiction: Perceived action of another agent that is impossible here; None: none.
         faults: Reasons of failed programs, by agent.
         is_fixed: True if all candidates are programs.
@@ -172,7 +178,7 @@ class Course:
         self.plan, self.drawn, self.candidates, self.draws = plan, drawn, candidates, draws
         self.seeds = seeds
         self.entries: list[Entry] = []
-        self.touched: frozenset[Position] = frozenset()
+        self.known = plan.known
         self.contradiction: str | None = None
         self.shared_from = 0
         self.faults: dict[str, Fault] = {}
@@ -253,8 +259,10 @@ class Course:
                 programs.act()
         if self._programs:
             self._settle()
-        for edit in () if done is None else done.edits:
-            self._edit(edit)
+        if done is not None:
+            self._learn(done)
+            for edit in done.edits:
+                self._edit(edit)
         return self._glimpse()
 
     def glimpse(self) -> Glimpse:
@@ -379,6 +387,46 @@ class Course:
                     agents[event.actor or ""] = replace(holder, inventory=inventory)
         if agents != self.world.agents:
             self.world.set_state(replace(self.world.snapshot(), agents=agents))
+        self._supply(now)
+
+    def _supply(self, now: Percept) -> None:
+        """Add what others are seen to take out of contents that the observer did not know.
+
+        What they use where it never saw a block is a chest.
+        """
+        deeds = [
+            each
+            for each in now.events
+            if each.kind in AT_CONTAINERS and each.actor not in self.plan.agents
+        ]
+        if not deeds:
+            return
+        taken: Counter[tuple[Position, str]] = Counter()
+        contents = {place: dict(items) for place, items in self.world.containers.items()}
+        blocks = self.world.terrain.draft()
+        for event in deeds:
+            place = self.world.container_at(_place(event.detail))
+            if place not in contents and self.plan.is_unseen(place):
+                blocks[self.world.box.index(place)] = Registry.load().state_id("chest")
+                contents[place] = {}
+            is_taking = event.kind is EventKind.GET_ITEM_FROM_CHEST
+            if is_taking and place in contents and place not in self.known:
+                for item, count in event.detail["items"].items():
+                    taken[place, item] += count
+        for (place, item), count in taken.items():
+            contents[place][item] = max(count, contents[place].get(item, 0))
+        if contents != self.world.containers:
+            snapshot = replace(self.world.snapshot(), blocks=blocks.terrain(), containers=contents)
+            self.world.set_state(snapshot)
+
+    def _learn(self, now: Percept) -> None:
+        """Take contents that the observer learns, and nobody in question changed, to be so."""
+        learnt = {place: dict(now.contents[place]) for place in now.contents.keys() - self.known}
+        contents = self.world.containers
+        there = {place: items for place, items in learnt.items() if place in contents}
+        if any(contents[place] != items for place, items in there.items()):
+            self.world.set_state(replace(self.world.snapshot(), containers={**contents, **there}))
+        self.known |= there.keys()
 
     def _do_as_seen(self, now: Percept) -> None:
         for name, (feet, yaw, pitch) in now.agents.items():
@@ -417,6 +465,8 @@ class Course:
         try:
             self.world.repeat(name, event.kind, event.detail)
         except WorldError as fault:
+            if event.kind in _AT_BLOCKS and self.plan.is_unseen(_place(event.detail)):
+                return
             self.contradiction = f"{name or 'somebody'} was seen to {event.kind}, but {fault}"
 
     def _edit(self, edit: Edit) -> None:
@@ -436,7 +486,7 @@ class Course:
             before, after = world.containers.get(place, {}), contents.get(place, {})
             for item in before.keys() | after.keys():
                 self._note_moved(place, item, after.get(item, 0) - before.get(item, 0))
-        self.touched = self.touched | edit.containers.keys()
+        self.known |= edit.containers.keys()
         world.set_state(replace(world.snapshot(), blocks=blocks.terrain(), containers=contents))
         self.entries.append(edit)
         self._note_changes()
@@ -458,7 +508,12 @@ class Course:
                 place = _place(event.detail)
                 for item, count in event.detail["items"].items():
                     self._note_moved(place, item, sign * count)
-        self.touched = self.touched | frame.containers.keys()
+        others = {
+            self.world.container_at(_place(event.detail))
+            for event in frame.events
+            if event.kind in AT_CONTAINERS and event.actor not in self.plan.agents
+        }
+        self.known |= frame.containers.keys() - others
         self._note_changes()
 
     def _note_moved(self, place: Position, item: str, count: int) -> None:

@@ -76,11 +76,18 @@ def imagine_in(
             f"where {absent[0]} was at tick {base.tick} is not known in {path_text(path)}; imagine "
             "from a tick at which it was seen"
         )
+    view, box = history.state(base.timeline, path, base.entries), recording.box
+    doubted = {
+        at for each in starts.doubts for at in each.strategy.model.alternatives[0].containers
+    }
+    complete = {place for place, each in view.containers.items() if each.complete}
     plan = CoursePlan(
         tuple(asked.actors),
         [percept for percept, _ in percepts],
         recording.setting.perception.speech_ticks,
         starts.of,
+        frozenset(complete | doubted),
+        lambda place: believed[box.index(place)] < 0 and place not in filled,
     )
     agreement = None
     if checked.evidence is None:
@@ -121,27 +128,18 @@ def _witness(
 ) -> Witness:
     ignored: set[int] = set()
     contents: set[Position] = set()
-    doubted: set[Position] = set()
     for doubt in starts.doubts:
         alternative = doubt.strategy.model.alternatives[0]
-        doubted |= set(alternative.containers)
         if doubt.strategy.model.actual is not None:
             ignored |= {cell_of(recording.box, place) for place in alternative.blocks}
             contents |= set(alternative.containers)
     view = recording.history.state(base.timeline, path, base.entries)
-    unknown = {
-        place
-        for percept in plan.percepts
-        for place in percept.contents
-        if place not in view.containers or not view.containers[place].complete
-    }
     return Witness(
         path[-1] if path else None,
         plan.percepts,
         plan.agents,
         frozenset(ignored),
         frozenset(contents),
-        frozenset(unknown - doubted),
         tuple(view.items.values()),
         recording.box,
         recording.context.sight,
