@@ -41,6 +41,9 @@ os.environ.pop("COLUMNS", None)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
+# Nobody cuts the power while tests run, and a disk that others use keeps each file waiting.
+os.fsync = lambda descriptor: None
+
 # Tests interrupt what they start; a shell that starts the tests in the background makes all of
 # them deaf to that.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,5 +1,6 @@
 """A place of a server or of a file becomes a scenario that says the same and runs embedded."""
 
+import bisect
 import gzip
 import struct
 import tracemalloc
@@ -327,16 +328,17 @@ def test_blocks_are_listed_as_long_as_a_file_may_list_them(monkeypatch):
     grid = np.zeros((5, 3, 4), dtype=np.int32)
     grid[:, 0] = 1
     grid[::2, 0, ::2] = grid[1::2, 0, 1::2] = 10
-    texts = []
-    for most in range(240, 150, -1):
+
+    def text(most):
         for module in (writing, yaml_reading):
             monkeypatch.setattr(module, "MAX_VALUES", most)
-        texts.append(scenario_text("floor", "", snapshot_of(grid)))
-    (listed, packed), numbers = np.unique(texts, return_counts=True)
+        return scenario_text("floor", "", snapshot_of(grid))
+
+    listed, packed = text(240), text(150)
     assert listed.count("{block: ") == 5 * 4
     assert packed.count("chunks: 0") == 1
-    # The first limit at which the blocks were packed is the first at which they cannot be read.
-    limit = 240 - int(numbers[0])
+    # The last limit at which the blocks are packed is the last at which they cannot be read.
+    limit = bisect.bisect_left(range(240), True, 150, key=lambda most: text(most) == listed) - 1
     for most, is_read in ((limit + 1, True), (limit, False)):
         monkeypatch.setattr(yaml_reading, "MAX_VALUES", most)
         with nullcontext() if is_read else pytest.raises(ScenarioError, match="holds more than"):

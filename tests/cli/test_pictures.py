@@ -44,7 +44,7 @@ def drawn(
     yield conditions, scenes
 
 
-@pytest.mark.parametrize("size", few_by_day(SIZES, 2))
+@pytest.mark.parametrize("size", few_by_day(SIZES))
 def test_nothing_overlaps_is_cut_off_or_empty(
     drawn: tuple[list[ConditionPicture], list[Scene]], size: object
 ) -> None:

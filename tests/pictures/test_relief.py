@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from tests.pictures.measuring import faults, texts
+from tests.profiles import few_by_day
 
 import beliefnest as bn
 from beliefnest.nest.past.views import visible_from
@@ -128,7 +129,7 @@ def test_walls_pillars_and_outlines_of_houses_stand_and_hills_do_not() -> None:
     assert not stand.any()
 
 
-@pytest.mark.parametrize("width", [65, 128, 400])
+@pytest.mark.parametrize("width", few_by_day([65, 128, 400], 2))
 def test_a_wall_is_dark_at_any_scale(width: int) -> None:
     blocks = {(x, 0, z): "stone" for x in range(width) for z in range(width)}
     middle = width // 2

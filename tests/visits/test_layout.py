@@ -95,6 +95,7 @@ def script(text, there, **values):
     return text
 
 
+@pytest.mark.long
 def test_who_moved_the_diamond_finds_it_where_sally_believes_it(play_of_a_person):
     with (
         Nest.open(play_of_a_person, realtime=True, listen=0) as nest,

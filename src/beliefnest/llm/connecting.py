@@ -5,9 +5,11 @@ errors are not part of an answer, but must be held in memory.
 """
 
 import json
+import os
 import re
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import ModelError
@@ -15,6 +17,8 @@ from beliefnest.llm.providers import Endpoint
 from beliefnest.llm.routes import SECONDS_TO_CONNECT, is_loopback
 
 if TYPE_CHECKING:  # An extra, imported when a provider is asked.
+    import ssl
+
     import httpx2
 
 _END = re.compile(rb"(?:^|[\r\n])data: ?\[DONE\]")
@@ -109,15 +113,24 @@ def bounded_client(endpoint: Endpoint, seconds: float, count: ByteCount) -> "htt
     is_near = is_loopback(endpoint.url)
     # Certificates of servers on this machine may be the user's own.
     is_plain = is_near and endpoint.url.startswith("http:")
+    named = (None if is_plain else os.environ.get(f"SSL_CERT_{kind}") for kind in ("FILE", "DIR"))
     return httpx2.AsyncClient(
         auth=endpoint.user,
         timeout=httpx2.Timeout(seconds, connect=SECONDS_TO_CONNECT),
         headers={"accept-encoding": "identity"},
         event_hooks={"response": [bound]},
         follow_redirects=True,
-        verify=httpx2.create_ssl_context(trust_env=not is_plain),
+        verify=_trusted(*named),
         trust_env=not is_near,
     )
+
+
+@cache
+def _trusted(file: str | None, folder: str | None) -> "ssl.SSLContext":
+    """Return the certificates to trust: those that variables name, or the system's. Read once."""
+    import httpx2
+
+    return httpx2.create_ssl_context(trust_env=bool(file or folder))
 
 
 def _events(body: bytes) -> bytes:

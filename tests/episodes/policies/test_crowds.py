@@ -57,6 +57,7 @@ def hall(agents: int, wall: bool = False) -> bn.Scenario:
     )
 
 
+@pytest.mark.long
 def test_six_agents_do_a_chain_of_six_calls() -> None:
     with bn.Episode(hall(6), dict.fromkeys(NAMES, "search:1")) as episode:
         assert episode.play().success

@@ -46,7 +46,7 @@ def test_a_result_tells_what_its_own_agent_did_and_said(nest: bn.Nest) -> None:
     ("code", "kind", "lines", "log"),
     [
         ("console.log(1)\nlet a = ;", "syntax", (), ()),
-        ("console.log(1)\nfor (;;) {}", "fuel", (1, 2), ("1",)),
+        pytest.param("console.log(1)\nfor (;;) {}", "fuel", (1, 2), ("1",), marks=pytest.mark.long),
         ("console.log(1)\nthrow new Error('x')\nconsole.log(2)", "error", (1, 2), ("1",)),
         ("console.log(1)\nawait waitTicks(bot, 100)\nconsole.log(2)", "timeout", (1, 2), ("1",)),
     ],

@@ -136,7 +136,7 @@ HIDDEN = st.dictionaries(PLACES, st.sampled_from(["dirt", "lever", "glass"]), ma
 ITEMS = st.dictionaries(st.sampled_from(["apple", "diamond"]), st.integers(1, 3))
 
 
-@settings(max_examples=at_night(300, 3), deadline=None)
+@settings(max_examples=at_night(300, 2), deadline=None)
 @given(blocks=HIDDEN, items=ITEMS, bob=st.sampled_from(BOBS), then=st.sampled_from(BEYOND))
 def test_what_lies_behind_a_wall_changes_no_value_that_is_read(
     worlds: Worlds,
@@ -152,7 +152,7 @@ def test_what_lies_behind_a_wall_changes_no_value_that_is_read(
     assert (changed.log, changed.ticks) == (plain.log, plain.ticks)
 
 
-@settings(max_examples=at_night(300, 3), deadline=None)
+@settings(max_examples=at_night(300, 2), deadline=None)
 @given(
     blocks=HIDDEN,
     items=ITEMS,

@@ -155,6 +155,7 @@ def test_skills_do_and_are_told_as_in_the_embedded_world(tmp_path):
         assert here == there
 
 
+@pytest.mark.long
 def test_the_example_of_the_page_runs(server, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     page = (Path(__file__).parents[3] / "docs" / "servers.md").read_text(encoding="utf-8")
@@ -209,6 +210,7 @@ def test_a_fork_of_the_real_world_goes_back_to_where_it_was(server):
         assert nest["/"].run("anne", taken).ok
 
 
+@pytest.mark.long
 def test_a_bot_that_is_sent_away_comes_back(console):
     with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
         nest["/"].run("sally", PUT)
