@@ -46,8 +46,18 @@ def test_every_room_is_in_the_table_and_in_the_contract():
 
 
 def imports_of(path, modules):
-    """Modules of the package that a file imports, also within functions."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    """Modules of the package that a file imports, also within functions, but for types alone."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    typed = [each for each in tree.body if isinstance(each, ast.If)]
+    idle = {
+        id(part)
+        for each in typed
+        if "TYPE_CHECKING" in ast.unparse(each.test)
+        for part in each.body
+    }
+    for node in ast.walk(tree):
+        if id(node) in idle:
+            continue
         if isinstance(node, ast.ImportFrom) and node.module is not None:
             names = {f"{node.module}.{alias.name}" for alias in node.names} & modules.keys()
             yield from names or {node.module} & modules.keys()

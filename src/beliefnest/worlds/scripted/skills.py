@@ -82,9 +82,9 @@ def _movable(wanted: Items, source: Items, target: Items, slots: int) -> dict[st
     stack_of = Registry.load().item_stack
     moved: dict[str, int] = {}
     for name, count in wanted.items():
-        held = sum_of(target, moved)
-        others = sum(-(-n // stack_of(other)) for other, n in held.items() if other != name)
-        room = (slots - others) * stack_of(name) - held.get(name, 0)
+        contents = sum_of(target, moved)
+        others = sum(-(-n // stack_of(other)) for other, n in contents.items() if other != name)
+        room = (slots - others) * stack_of(name) - contents.get(name, 0)
         if (most := min(count, source.get(name, 0), room)) > 0:
             moved[name] = most
     return moved
@@ -228,15 +228,15 @@ def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
         raise SkillError(
             f"{quoted(name)} is no agent that is known to be here; it is {sorted(others)}"
         )
-    given = items_in({text_in(item): count})
-    if any(hand.inventory.get(kind, 0) < n for kind, n in given.items()):
+    gift = items_in({text_in(item): count})
+    if any(hand.inventory.get(kind, 0) < n for kind, n in gift.items()):
         raise SkillError(f"cannot give {count} {item}: the inventory holds {hand.contents}.")
     where = others[name].position
     yield from walk(hand, where, Near(block_at(where), _NEAR), name)
     yield 0
     if not hand.can_throw_to(name):
         raise SkillError(f"{name} cannot be given anything from here: something solid is between")
-    hand.world.give(hand.name, name, given)
+    hand.world.give(hand.name, name, gift)
 
 
 def _wait_ticks(hand: Hand, ticks: Any) -> Doing:
