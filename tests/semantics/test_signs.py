@@ -7,7 +7,7 @@ import pytest
 import beliefnest as bn
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.grounds import Source
-from beliefnest.nest.past.forest_codec import restored, saved
+from beliefnest.nest.past.checkpoints import restored, saved
 from beliefnest.nest.past.history import context_of
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.trace_import import import_trace

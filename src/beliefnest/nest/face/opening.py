@@ -1,14 +1,16 @@
-"""Opening of nests, for new runs and for recorded ones."""
+"""Opening of nests, for new runs and for recorded ones, and of the readers of claims in them."""
 
-from collections.abc import Mapping
+import inspect
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import msgspec
 
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.face.hearing_model import reader_of
+from beliefnest.nest.acting.hearsay import ClaimReader
+from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.past.recording import Recording, read_recording
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.setting_codec import encode_start
@@ -16,11 +18,16 @@ from beliefnest.nest.past.versions import own_versions
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.run_records import RunRecord
 from beliefnest.timeline.store import Journal
-from beliefnest.world.nameable import ClaimsFrom
+from beliefnest.world.claims import Claim
+from beliefnest.world.nameable import ClaimsFrom, Nameable
+from beliefnest.world.paths import BeliefPath
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.names import maker_of
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import World
+
+if TYPE_CHECKING:  # Models take long to import, and few nests have one.
+    from beliefnest.llm.messages import Model
 
 
 class HasSetting(Protocol):
@@ -101,7 +108,7 @@ def begun(
             start = b"" if store is None else encode_start(setting, name)
             journal.records.set_run(_record(scenario, world, seed, start))
             recording = Recording(setting, journal, seed, renderer, name)
-            return Engine(recording, world, reader_of(claims_from, recording)).begin()
+            return Engine(recording, world, _reader_of(claims_from, recording)).begin()
     except BaseException:
         journal.close()
         raise
@@ -145,7 +152,7 @@ def resumed(
             world = worlds.lend(name)
         _invite(recording.setting, world)
         journal.records.add_versions(own_versions())
-        return Engine(recording, world, reader_of(claims_from, recording))
+        return Engine(recording, world, _reader_of(claims_from, recording))
     except BaseException:
         journal.close()
         raise
@@ -163,3 +170,91 @@ def _invite(setting: Setting, world: World) -> None:
             "with Nest.open(..., realtime=True, listen=25565), run it with --realtime --listen "
             "25565, or play on a server, minecraft://HOST:PORT"
         )
+
+
+@runtime_checkable
+class _AsksModel(Protocol):
+    """Hook that asks a model, as `claims_from_model` returns it."""
+
+    @property
+    def name(self) -> str:
+        """The name of the model."""
+
+    def through(self, wrap: "Callable[[Model], Model]") -> ClaimsFrom:
+        """Return the same hook with its model replaced by `wrap(model)`."""
+
+
+def _reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | None:
+    """Return the reader that asks a hook in a nest; None if there is no hook.
+
+    Raises:
+        InputError: The hook cannot be called with three arguments: text, speaker, nameable.
+    """
+    if hook is None:
+        return None
+    own: object = hook
+    if isinstance(own, _AsksModel):
+        return _ModelReader(own, recording)
+    if not _takes_three(own):
+        raise InputError(
+            f"claims_from is {own!r}; give a function of three arguments: text, speaker, nameable"
+        )
+    return _FunctionReader(hook)
+
+
+def _takes_three(hook: object) -> bool:
+    """Return True if an object is callable with three arguments, or has no signature."""
+    if not callable(hook):
+        return False
+    try:
+        inspect.signature(hook).bind("text", "speaker", "nameable")
+    except TypeError:
+        return False
+    except ValueError:
+        # Some functions written in C have no signature.
+        return True
+    return True
+
+
+class _FunctionReader:
+    """Reader that asks a function. An exception in it ends the call with the utterance."""
+
+    def __init__(self, hook: ClaimsFrom) -> None:
+        self._hook = hook
+        self.name = str(getattr(hook, "__qualname__", type(hook).__qualname__))
+
+    def read(
+        self, path: BeliefPath, tick: int, text: str, speaker: str, nameable: Nameable
+    ) -> Iterable[Claim]:
+        items: object = self._hook(text, speaker, nameable)
+        if isinstance(items, str) or not isinstance(items, Iterable):
+            raise InputError(
+                f"claims_from ({self.name}) returned {items!r} for {text!r}; it must return a list "
+                "of claims, [] for none"
+            )
+        return items
+
+
+class _ModelReader:
+    """Reader that asks a model. If it fails or its answer is invalid, that is recorded.
+
+    The utterance then has no claims.
+    """
+
+    def __init__(self, hook: _AsksModel, recording: Recording) -> None:
+        self._hook = hook
+        self._recording = recording
+        self.name = hook.name
+
+    def read(
+        self, path: BeliefPath, tick: int, text: str, speaker: str, nameable: Nameable
+    ) -> Iterable[Claim]:
+        detail = {"claims_from": text, "speaker": speaker}
+
+        def recorded(model: "Model") -> "Model":
+            return RecordingModel(model, self._recording, path, detail, tick)
+
+        try:
+            return tuple(self._hook.through(recorded)(text, speaker, nameable))
+        except ModelError:
+            return ()
