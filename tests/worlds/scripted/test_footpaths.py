@@ -13,7 +13,7 @@ from beliefnest.world import terrain
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
-from beliefnest.worlds.scripted import footing, footpaths
+from beliefnest.worlds.scripted import footpaths
 from beliefnest.worlds.scripted.footpaths import Ground, InReach, Near, WalkGoal
 
 STONE, AIR, UNKNOWN = "stone", "air", ""
@@ -319,11 +319,13 @@ def test_windows_of_a_large_box_have_the_paths_of_all_of_it(
     box, grid = hills(random)
     whole = Ground(registry, box, grid)
     monkeypatch.setattr(terrain, "DENSE", 100)
-    monkeypatch.setattr(footing, "_HALF", random.choice((4, 7)))
+    monkeypatch.setattr(footpaths, "_HALF", random.choice((4, 7)))
     monkeypatch.setattr(footpaths, "_MOST_CELLS", most)
     widened = []
-    wider = footing.Footing.wider
-    monkeypatch.setattr(footing.Footing, "wider", lambda *given: widened.append(1) or wider(*given))
+    wider = footpaths._Footing.wider
+    monkeypatch.setattr(
+        footpaths._Footing, "wider", lambda *given: widened.append(1) or wider(*given)
+    )
     parts = Ground(registry, box, Terrain.of(grid))
     around = [
         (LOW[0] + i, LOW[1] + j, LOW[2] + k)

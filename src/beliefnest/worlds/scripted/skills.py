@@ -19,9 +19,8 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign, sign_fault
 from beliefnest.world.texts import MOST_UTTERANCES, quoted
 from beliefnest.world.values import EYE_HEIGHT, Items, Position, block_at
-from beliefnest.worlds.scripted.building import mine_block, place_item, press_button, switch_lever
 from beliefnest.worlds.scripted.facts import sum_of
-from beliefnest.worlds.scripted.footpaths import Near
+from beliefnest.worlds.scripted.footpaths import Ground, Near
 from beliefnest.worlds.scripted.hand import (
     Doing,
     Hand,
@@ -36,6 +35,74 @@ from beliefnest.worlds.scripted.hand import (
     walk,
     walk_to_use,
 )
+
+_MOST_WAITED = 40
+
+
+def _switch_lever(*, powered: bool) -> Callable[..., Doing]:
+    """Return the skill that switches a lever; it does nothing if the lever is in that state."""
+
+    def switch(hand: Hand, position: Any) -> Doing:
+        place = block_in(position)
+        yield from walk_to_use(hand, place, "lever", "lever".__eq__)
+        if _is_powered(hand, place) is powered:
+            return
+        yield 0
+        # Another agent may have switched it in this very tick.
+        if _is_powered(hand, place) is not powered:
+            hand.world.use_lever(hand.name, place, powered=powered)
+
+    return switch
+
+
+def press_button(hand: Hand, position: Any) -> Doing:
+    """Press a button; if it is pressed already, first wait until it comes out."""
+    place = block_in(position)
+    yield from walk_to_use(hand, place, "button", lambda name: name.endswith("_button"))
+    yield 0
+    for _ in range(_MOST_WAITED):
+        if not _is_powered(hand, place):
+            break
+        yield 0
+    hand.world.press_button(hand.name, place)
+
+
+def _mine_block(hand: Hand, position: Any, name: Any) -> Doing:
+    """Break a block and take its drops."""
+    place, wanted = block_in(position), text_in(name)
+    yield from walk_to_use(hand, place, wanted, wanted.__eq__, "Look where it is.")
+    yield 0
+    # Another agent may have replaced it in this very tick.
+    if hand.ground().name_at(place) != wanted:
+        raise hand.lacking(wanted, place, "Look where it is.")
+    hand.world.mine(hand.name, place)
+
+
+def _place_item(hand: Hand, name: Any, position: Any) -> Doing:
+    """Place a block of the inventory, from a position next to it."""
+    place, item = block_in(position), text_in(name)
+    if not hand.inventory.get(item, 0):
+        raise SkillError(
+            f"the inventory holds no {item}; it holds: {hand.contents}. Get some first."
+        )
+    _check_free(hand, hand.known(), place)
+    yield from walk(hand, place, hand.reach(place, beside=True), "the position")
+    hand.check_touch(place, "the position")
+    yield 0
+    _check_free(hand, hand.ground(), place)
+    hand.world.put(hand.name, item, place)
+
+
+def _check_free(hand: Hand, ground: Ground, place: Position) -> None:
+    """Raise SkillError if a ground has a block at a place."""
+    if not (ground.name_at(place) or "air").endswith("air"):
+        raise hand.lacking("free place", place, "Choose another one.")
+
+
+def _is_powered(hand: Hand, place: Position) -> bool:
+    """Return True if a switch is on."""
+    return Registry.load().properties(hand.world.state_at(place)).get("powered") == "true"
+
 
 _NEAR = 2.0
 _CHEST = "Give the position of a chest or barrel."
@@ -264,11 +331,11 @@ SKILLS: Mapping[str, Callable[..., Doing]] = {
     "depositItemIntoChest": _deposit_item_into_chest,
     "openDoor": _use_door(to_open=True),
     "closeDoor": _use_door(to_open=False),
-    "turnOnLever": switch_lever(powered=True),
-    "turnOffLever": switch_lever(powered=False),
+    "turnOnLever": _switch_lever(powered=True),
+    "turnOffLever": _switch_lever(powered=False),
     "pressButton": press_button,
-    "mineBlock": mine_block,
-    "placeItem": place_item,
+    "mineBlock": _mine_block,
+    "placeItem": _place_item,
     "writeSign": _write_sign,
     "readSign": _read_sign,
     "lookAt": _look_at,
