@@ -10,10 +10,9 @@ from msgspec.structs import replace
 
 from beliefnest.belief.view import State
 from beliefnest.episodes.considered import SearchTrace
-from beliefnest.episodes.counted_model import CountedModel
 from beliefnest.episodes.decided import Ended, Spent
 from beliefnest.episodes.imagination import Imagination
-from beliefnest.errors import PathError
+from beliefnest.errors import ModelError, PathError
 from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.prompts.mind_view import MindView
 from beliefnest.scenarios.goals import Goal
@@ -22,9 +21,10 @@ from beliefnest.world.values import Position
 
 if TYPE_CHECKING:  # Importing models and tasks takes long.
     from beliefnest.episodes.task import Task
-    from beliefnest.llm.messages import Model
+    from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
     from beliefnest.minds.inference import Inference
     from beliefnest.minds.mind_model import MindModel
+
 
 GO_ON = "go on"
 """Text that a policy returns instead of a program to continue its last one, which was cut."""
@@ -337,7 +337,7 @@ class AgentView:
         Args:
             model: Any model, also one of your own.
         """
-        return CountedModel(self._noting(model), self._allowed, self._spend)
+        return _CountedModel(self._noting(model), self._allowed, self._spend)
 
     def _spend(self, spent: Spent) -> None:
         self.spent += spent
@@ -400,3 +400,43 @@ class Policy(Protocol):
         Args:
             view: Knowledge of the agent.
         """
+
+
+class _CountedModel(msgspec.Struct, frozen=True):
+    """Model wrapper that reports the usage of each answer, even of unusable ones.
+
+    Attributes:
+        model: The model to ask.
+        check: Function that raises ModelError if nothing more may be spent.
+        spend: Function that receives the spending of a request.
+    """
+
+    model: "Model"
+    check: Callable[[], None]
+    spend: Callable[[Spent], None]
+
+    @property
+    def name(self) -> str:
+        """Name of the wrapped model."""
+        return self.model.name
+
+    def answer(self, messages: "Sequence[Message]", sampling: "Sampling") -> "Answer":
+        """Ask the model.
+
+        Raises:
+            ModelError: The model failed, or a limit of the episode is reached.
+        """
+        self.check()
+        try:
+            answer = self.model.answer(messages, sampling)
+        except ModelError as error:
+            usage: Usage | None = getattr(error, "usage", None)
+            if usage is not None:
+                self.spend(_spent(usage))
+            raise
+        self.spend(_spent(answer.usage))
+        return answer
+
+
+def _spent(usage: "Usage") -> Spent:
+    return Spent(usage.requests, usage.tokens, usage.cost)

@@ -9,9 +9,8 @@ from tests.profiles import at_night, few_by_day
 
 import beliefnest as bn
 from beliefnest.episodes.policies.course_planner import USUAL
-from beliefnest.episodes.policies.infer import goals_of_planner, posterior
+from beliefnest.episodes.policies.infer import goals_of_planner, likelihoods_of_traces, posterior
 from beliefnest.episodes.policies.model import ModelPolicy
-from beliefnest.episodes.policies.traces import likelihoods_of_traces
 from beliefnest.episodes.tasks import parameters_of
 from beliefnest.llm.offline import OfflineModel
 

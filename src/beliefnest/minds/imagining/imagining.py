@@ -2,27 +2,33 @@
 
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from inspect import signature
 from random import Random
 from typing import Any
+
+import msgspec
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.errors import InputError
 from beliefnest.minds.imagining.course_agreement import Agreement, Tolerance, Witness
-from beliefnest.minds.imagining.courses import Candidate, CoursePlan
+from beliefnest.minds.imagining.courses import Candidate, Course, CoursePlan, PolicyProgram
 from beliefnest.minds.imagining.histories import Imagined, PastFace, weigh
-from beliefnest.minds.imagining.history_candidates import Candidates, HistoryPolicies
-from beliefnest.minds.imagining.history_starts import HistoryStarts
+from beliefnest.minds.imagining.history_starts import Doubt, HistoryStarts
 from beliefnest.minds.imagining.imagine_arguments import Asked, Checked
 from beliefnest.minds.imagining.particles import Drawn, HistoryDraws, spread
+from beliefnest.minds.mind_model import MindModel
+from beliefnest.minds.node_inference import ModelStart, start_of_model
+from beliefnest.minds.walking import Strategy
 from beliefnest.nest.acting.script import OnProgress
 from beliefnest.nest.acting.starting import start_of
 from beliefnest.nest.past.percepts import Percept, percepts_of
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import ForkPoint
+from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.side import SideJournal
-from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.paths import BeliefPath, normalised, path_text
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import Block, Position
+from beliefnest.world.values import Block, Position, block_at
 from beliefnest.world.words import counted
 
 _FEW = 0.1
@@ -65,8 +71,8 @@ def imagine_in(
     )
     side.selected = dict(recording.selected)
     side.records.set_run(recording.records.run())
-    policies = HistoryPolicies(side, starts, path, past)
-    candidates = Candidates(recording, path, base, end, starts, policies, len(asked.actors) == 1)
+    policies = _HistoryPolicies(side, starts, path, past)
+    candidates = _Candidates(recording, path, base, end, starts, policies, len(asked.actors) == 1)
     starts.candidates = {
         agent: {name: candidates.of(agent, name, policy) for name, policy in named.items()}
         for agent, named in asked.actors.items()
@@ -203,3 +209,124 @@ def _warn(imagined: Imagined) -> None:
 
 def _say_nothing(what: str, done: int, total: int) -> None:
     """Report no progress."""
+
+
+class _Candidates(msgspec.Struct, frozen=True):
+    """Checks of candidates, and their preparation.
+
+    Attributes:
+        recording: Recording of the nest.
+        path: The simulator that histories are of.
+        base: The point from which they begin.
+        end: The point at which they end.
+        starts: Beginnings of the histories, which learn the doubts of models.
+        policies: Policies as programs.
+        is_alone: True if a single agent has candidates; others may open it a way.
+    """
+
+    recording: Recording
+    path: BeliefPath
+    base: ForkPoint
+    end: ForkPoint
+    starts: HistoryStarts
+    policies: "_HistoryPolicies"
+    is_alone: bool
+
+    def of(self, agent: str, name: str, one: object) -> Candidate:
+        """Return a candidate of an agent.
+
+        Raises:
+            InputError: It is no program, model of that agent, or policy; or the model cannot
+                reach any of its goals.
+        """
+        if isinstance(one, str):
+            return Candidate(name, program=one)
+        if isinstance(one, MindModel):
+            if one.agent != agent:
+                raise InputError(
+                    f"candidate {name!r} of {agent} is a model of {one.agent}; give one of {agent}"
+                )
+            start = start_of_model(self.recording, self.path, one, self.base.tick, self.end.tick)
+            feet = self.starts.snapshot.agents.get(agent)
+            if feet is not None and self.is_alone:
+                start.check_goals(block_at(feet.position))
+            return Candidate(name, strategy=_strategy(self.recording, start, self.starts, name))
+        if callable(one):
+            return Candidate(name, policy=self.policies.of(one, agent, name))
+        raise InputError(
+            f"candidate {name!r} of {agent} is {one!r}; give a program (text), a MindModel, or a "
+            "policy (a function from the agent's simulator to a program)"
+        )
+
+
+def _strategy(
+    recording: Recording, start: ModelStart, starts: HistoryStarts, name: str
+) -> Strategy:
+    context = recording.context
+    strategy = Strategy(
+        start.model,
+        start.scene,
+        start.agrees,
+        start.step_ticks,
+        context.sight,
+        transparent=context.options.containers == "transparent",
+    )
+    elements = start.model.alternatives[0].elements
+    for doubt in starts.doubts:
+        same = doubt.strategy.model
+        if elements & doubt.elements and (
+            [repr(each) for each in same.alternatives]
+            != [repr(each) for each in start.model.alternatives]
+            or same.actual_weights != start.model.actual_weights
+        ):
+            raise InputError(
+                f"candidate {name!r} of {start.model.agent} and one of {same.agent} doubt the same "
+                "elements in different ways; give both the same doubt and the same actual"
+            )
+    if elements and not any(elements == doubt.elements for doubt in starts.doubts):
+        starts.doubts.append(Doubt(elements, strategy))
+    return strategy
+
+
+@dataclass(eq=False)
+class _HistoryPolicies:
+    """Policies as programs: shows each policy the course so far."""
+
+    side: Recording
+    starts: HistoryStarts
+    path: BeliefPath
+    past: PastFace
+    _keys: dict[Course, tuple[TimelineKey, int]] = field(default_factory=dict)
+
+    def of(self, policy: Callable[..., object], agent: str, name: str) -> PolicyProgram:
+        """Return what asks a policy for the next program.
+
+        A policy with a parameter `random` gets the random numbers of its history by it.
+        """
+        draws = "random" in signature(policy).parameters
+
+        def program(course: Course, actor: str) -> str:
+            simulator = self._shown(course, actor)
+            code = policy(simulator, random=course.chance(actor)) if draws else policy(simulator)
+            if not isinstance(code, str):
+                raise InputError(
+                    f"policy {name!r} of {agent} returned {code!r}; return a program, or an empty "
+                    "text to do nothing more"
+                )
+            return code
+
+        return program
+
+    def _shown(self, course: Course, agent: str) -> Any:
+        journal = self.side.journal
+        latest = self._keys.get(course)
+        entries = self.starts.entries(course)
+        if latest is None:
+            key = TimelineKey(self.path, f"drawing {len(self._keys)}")
+            journal.create(key, self.starts.base, self.starts.base.tick)
+            latest = (key, 0)
+        key, written = latest
+        journal.append(key, entries[written:], course.tick)
+        self._keys[course] = (key, len(entries))
+        recording = self.side.on(key)
+        return self.past(recording, normalised((*self.path, agent)), course.tick)
