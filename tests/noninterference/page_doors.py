@@ -11,9 +11,9 @@ from beliefnest.plan.scenario_cells import Cell, CellKey
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.participants.folder import experiment
 from beliefnest.studies.participants.items import Item, ItemQuestion
 from beliefnest.studies.participants.playing import view_of
+from beliefnest.studies.participants.running import experiment
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.viewer.page.reasons import look_of, sight_of
 from beliefnest.viewer.page.run import About, RunData

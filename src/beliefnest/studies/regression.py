@@ -1,8 +1,11 @@
-"""Regression of right answers on columns of a study, with variations as groups."""
+"""Regression of right answers on columns of a study, with variations as groups.
+
+What the rows cannot determine is said in words before anything is fitted.
+"""
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
@@ -11,22 +14,165 @@ import numpy as np
 from beliefnest.errors import InputError
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.counting import Row, count_rows, judged_rows
-from beliefnest.studies.fit_checks import (
-    FEWEST,
-    ColumnNames,
-    certainty_fault,
-    level_of,
-    one_sided_level,
-    rows_fault,
-    separation_fault,
-    support_fault,
-)
 from beliefnest.studies.fits import Family, Fit, bootstrap, firth, gee, mixed, statsmodels
 from beliefnest.studies.plainframe import Typed, plain_frame
 from beliefnest.world.array_types import Floats
+from beliefnest.world.words import counted
 
 if TYPE_CHECKING:  # pandas is optional, and imported when a table is made.
     import pandas
+
+
+_FEWEST = 3
+"""Least number of variations from which an error between variations can be estimated."""
+
+_ColumnNames = tuple[str, ...]
+"""Name of a column, or names of columns that interact."""
+
+
+def _level_of(row: Row, name: str) -> str:
+    """Return the level of a row, as text."""
+    value = row.get(name)
+    return "-" if value is None else str(value)
+
+
+def _rows_fault(rows: Sequence[Row], names: Sequence[str]) -> str:
+    """Return what prevents any regression on some columns; empty: nothing."""
+    if not rows:
+        return "no row is judged"
+    if len({bool(row["ok"]) for row in rows}) == 1:
+        side = "right" if rows[0]["ok"] else "wrong"
+        return f"all {len(rows)} judged rows are {side}, so that there is nothing to explain"
+    for name in names:
+        levels = {_level_of(row, name) for row in rows}
+        if len(levels) == 1:
+            return f"{name} is {levels.pop()} in all judged rows; leave it out"
+    return ""
+
+
+def _support_fault(
+    rows: Sequence[Row],
+    effects: Sequence[_ColumnNames],
+    design: Floats,
+    groups: Any,
+    terms: Sequence[str],
+) -> str:
+    """Return which coefficients rest on too few variations; empty: none.
+
+    Args:
+        rows: Judged rows.
+        effects: Columns, alone or interacting.
+        design: Design matrix of full rank.
+        groups: Number of the variation of each row.
+        terms: Names of the columns of the design matrix.
+    """
+    total = int(groups.max()) + 1
+    if total < _FEWEST:
+        return f"the judged rows have {counted(total, 'variation')}; at least {_FEWEST} are needed"
+    for names, values, own in _cells(rows, effects):
+        variations = len({rows[number]["variation"] for number in own})
+        if variations < _FEWEST:
+            return (
+                f"{_told(names, values)} has judged rows of {counted(variations, 'variation')}; an "
+                f"error between variations needs at least {_FEWEST}"
+            )
+    whole = design.T @ design
+    for number in range(total):
+        own = design[groups == number]
+        rest = whole - own.T @ own
+        if np.linalg.matrix_rank(rest, hermitian=True) < len(terms):
+            _, vectors = np.linalg.eigh(rest)
+            lost = [each for each, at in zip(terms, vectors[:, 0], strict=True) if abs(at) > 1e-6]
+            return f"{', '.join(lost)} cannot be told apart without the rows of a single variation"
+    return ""
+
+
+def _certainty_fault(right: Floats, design: Floats) -> str:
+    """Return that the effects leave no error to estimate; empty: they leave some."""
+    patterns, codes = np.unique(design, axis=0, return_inverse=True)
+    shares = np.bincount(codes.ravel(), right) / np.bincount(codes.ravel())
+    if ((shares > 0) & (shares < 1)).any() or len(patterns) > design.shape[1]:
+        return ""
+    return "the effects explain every answer, so that there is no error to estimate"
+
+
+def _one_sided_level(rows: Sequence[Row], effects: Sequence[_ColumnNames], right: Floats) -> str:
+    """Return which level, or combination of levels, has right or wrong rows only; empty: none."""
+    for names, values, own in _cells(rows, effects):
+        sides = {float(right[number]) for number in own}
+        if len(sides) == 1:
+            side = "right" if sides == {1.0} else "wrong"
+            return f"all {counted(len(own), 'row')} with {_told(names, values)} are {side}"
+    return ""
+
+
+def _separation_fault(
+    rows: Sequence[Row],
+    effects: Sequence[_ColumnNames],
+    right: Floats,
+    design: Floats,
+    terms: Sequence[str],
+) -> str:
+    """Return which log odds have no finite estimate; empty: all have one.
+
+    Rows are separated, or quasi-separated, if a linear combination of the design's columns is
+    nowhere on the wrong side and somewhere on the right one. A linear program finds it (Konis,
+    2007).
+    """
+    endless = _endless(right, design)
+    if not endless:
+        return ""
+    if level := _one_sided_level(rows, effects, right):
+        return f"{level} (separation), so that its log odds have no finite estimate"
+    return (
+        "the levels of the effects predict some rows without an error (quasi-separation), so that "
+        f"the log odds of {', '.join(terms[number] for number in endless)} have no finite estimate"
+    )
+
+
+def _endless(right: Floats, design: Floats) -> list[int]:
+    """Return the numbers of the columns whose coefficients may grow without bound."""
+    from scipy.optimize import linprog
+
+    patterns, codes = np.unique(design, axis=0, return_inverse=True)
+    shares = np.bincount(codes.ravel(), right) / np.bincount(codes.ravel())
+    both = (shares > 0) & (shares < 1)
+    sides = np.where(shares == 1, 1.0, -1.0)[:, None] * patterns
+    equal = {"A_eq": patterns[both], "b_eq": np.zeros(both.sum())} if both.any() else {}
+    if both.all():
+        return []
+    limits = {"A_ub": -sides[~both], "b_ub": np.zeros((~both).sum()), "bounds": (-1, 1)}
+    if linprog(-sides[~both].sum(axis=0), **limits, **equal).fun > -1e-7:
+        return []
+    endless = []
+    for number in range(design.shape[1]):
+        aim = np.zeros(design.shape[1])
+        aim[number] = 1.0
+        if any(linprog(sign * aim, **limits, **equal).fun < -1e-7 for sign in (1, -1)):
+            endless.append(number)
+    return endless
+
+
+def _cells(
+    rows: Sequence[Row], effects: Sequence[_ColumnNames]
+) -> Iterator[tuple[_ColumnNames, tuple[str, ...], list[int]]]:
+    """Yield each combination of levels of each effect, and of the columns in it."""
+    every = itertools.chain.from_iterable(
+        itertools.combinations(names, size)
+        for names in effects
+        for size in range(1, len(names) + 1)
+    )
+    for names in sorted(dict.fromkeys(every), key=len):
+        cells: dict[tuple[str, ...], list[int]] = {}
+        for number, row in enumerate(rows):
+            cells.setdefault(tuple(_level_of(row, name) for name in names), []).append(number)
+        for values, own in cells.items():
+            yield names, values, own
+
+
+def _told(names: _ColumnNames, values: Sequence[str]) -> str:
+    return " and ".join(f"{name} {value}" for name, value in zip(names, values, strict=True))
+
 
 FitKind = Literal["gee", "mixed"]
 KINDS: tuple[FitKind, ...] = ("gee", "mixed")
@@ -184,7 +330,7 @@ def fit_rows(
         raise InputError(f"kind is {kind!r}; give one of {', '.join(KINDS)}")
     if family not in FAMILIES:
         raise InputError(f"family is {family!r}; give one of {', '.join(FAMILIES)}")
-    wanted: list[ColumnNames] = [
+    wanted: list[_ColumnNames] = [
         (each,) if isinstance(each, str) else tuple(dict.fromkeys(each)) for each in effects
     ]
     names = list(dict.fromkeys(name for each in wanted for name in each))
@@ -202,7 +348,7 @@ def fit_rows(
         terms=_terms(terms, fitted),
         substitute=substitute,
         counts=() if sound else tuple(_counts(chosen, names)),
-        references={name: level_of(chosen[0], name) for name in names} if chosen else {},
+        references={name: _level_of(chosen[0], name) for name in names} if chosen else {},
         rows=len(chosen),
         groups=len({row["variation"] for row in chosen}),
         correlation=fitted.correlation if sound else None,
@@ -226,13 +372,13 @@ def _counts(rows: Sequence[Row], names: Sequence[str]) -> list[dict[str, Any]]:
 
 def _fitted(
     rows: Sequence[Row],
-    effects: Sequence[ColumnNames],
+    effects: Sequence[_ColumnNames],
     names: Sequence[str],
     kind: FitKind,
     family: Family,
 ) -> tuple[Fit, Sequence[str], Substitute | None]:
     """Return the fit, the names of its terms, and what is sound in its place."""
-    fault = rows_fault(rows, names) or _size_fault(rows, effects)
+    fault = _rows_fault(rows, names) or _size_fault(rows, effects)
     if fault:
         return Fit.failed(fault), (), None
     design, terms = _design(rows, effects, names)
@@ -245,12 +391,12 @@ def _fitted(
         return Fit.failed(fault), (), None
     right = np.array([bool(row["ok"]) for row in rows], dtype=float)
     groups = _codes([row["variation"] for row in rows])
-    thin = support_fault(rows, effects, design, groups, terms)
+    thin = _support_fault(rows, effects, design, groups, terms)
     endless, level = "", ""
     if not thin and family == "gaussian":
-        endless, level = certainty_fault(right, design), one_sided_level(rows, effects, right)
+        endless, level = _certainty_fault(right, design), _one_sided_level(rows, effects, right)
     elif not thin:
-        endless = separation_fault(rows, effects, right, design, terms)
+        endless = _separation_fault(rows, effects, right, design, terms)
     fault = thin or endless
     if level and kind == "gee":
         # Its robust variance would be 0, however few its rows; a mixed model has one for all rows.
@@ -271,10 +417,10 @@ def _fitted(
     return Fit.failed(fault), (), other
 
 
-def _size_fault(rows: Sequence[Row], effects: Sequence[ColumnNames]) -> str:
+def _size_fault(rows: Sequence[Row], effects: Sequence[_ColumnNames]) -> str:
     """Return that effects have more coefficients than a fit can take; empty: they have not."""
     count = 1 + sum(
-        math.prod(len({level_of(row, name) for row in rows}) - 1 for name in names)
+        math.prod(len({_level_of(row, name) for row in rows}) - 1 for name in names)
         for names in effects
     )
     if count <= _MOST_COEFFICIENTS:
@@ -306,7 +452,7 @@ def _substitute(
         family: Its family.
         solid: True if rows of enough variations have each level, and none is right or wrong only.
     """
-    if int(groups.max()) + 1 < FEWEST:
+    if int(groups.max()) + 1 < _FEWEST:
         return None
     if solid and kind == "mixed":
         fitted = gee(right, design, groups, family)
@@ -366,14 +512,14 @@ def _codes(values: Sequence[object]) -> "np.ndarray[Any, Any]":
 
 
 def _design(
-    rows: Sequence[Row], effects: Sequence[ColumnNames], names: Sequence[str]
+    rows: Sequence[Row], effects: Sequence[_ColumnNames], names: Sequence[str]
 ) -> tuple[Floats, list[str]]:
     """Return the design matrix in treatment coding, and the names of its columns."""
-    levels = {name: list(dict.fromkeys(level_of(row, name) for row in rows)) for name in names}
+    levels = {name: list(dict.fromkeys(_level_of(row, name) for row in rows)) for name in names}
     dummies = {
         name: {
             f"{name}[{level}]": np.array(
-                [level_of(row, name) == level for row in rows], dtype=float
+                [_level_of(row, name) == level for row in rows], dtype=float
             )
             for level in factors[1:]
         }

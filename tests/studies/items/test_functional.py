@@ -10,8 +10,7 @@ from tests.profiles import at_night, few_by_day
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError
-from beliefnest.studies.items.functional.certifying import Certificate, certified
-from beliefnest.studies.items.functional.groups import GroupFolder
+from beliefnest.studies.items.functional.certifying import Certificate, GroupFolder, certified
 from beliefnest.studies.items.functional.pairing import LiteralFunctionalPair, by_order, read_gaps
 from beliefnest.studies.items.functional.siblings import TaskFamily
 

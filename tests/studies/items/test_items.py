@@ -11,8 +11,8 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.content import ScenarioWarning
-from beliefnest.studies.items.balance import balanced_names
 from beliefnest.studies.items.item_set import ItemSet
+from beliefnest.studies.items.making import balanced_names
 from beliefnest.studies.items.record import ItemRecord
 from beliefnest.studies.items.report import report_of, shortcut_rows
 

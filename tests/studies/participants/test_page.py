@@ -6,7 +6,7 @@ import pytest
 from tests.studies.transfer import STUDY, TRANSFER, content_of, transfer_in
 
 import beliefnest as bn
-from beliefnest.studies.participants.instructions import read_instructions
+from beliefnest.studies.participants.running import read_instructions
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 

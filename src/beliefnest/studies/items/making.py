@@ -1,30 +1,37 @@
-"""Items of a study: its scripts are played without any model, and each question is recorded."""
+"""Items of a study: its scripts are played without any model, and each question is recorded.
+
+Shortcuts answer a question by rules that need no belief, or a belief of a lower order only. A study
+can be balanced: it plays the variations of which shortcuts are right as often as a guess.
+"""
 
 import json
 import random
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 from msgspec.structs import replace
 
-from beliefnest.errors import InputError, ScenarioError
+from beliefnest.errors import InputError, MissingExtraError, ScenarioError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.plan.cells import Plan, digest, variation_id
 from beliefnest.plan.scenario_cells import Cell
+from beliefnest.scenarios.believed import Believed
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.naming import Naming
 from beliefnest.scenarios.probing import naming_for, resolved
 from beliefnest.scenarios.prose_check import check_prose
+from beliefnest.scenarios.prose_reading import story_sentences
 from beliefnest.scenarios.questioning import shuffled
 from beliefnest.studies.checking import StudyKeyError
-from beliefnest.studies.items.balance import balanced_names
 from beliefnest.studies.items.record import DroppedQuestion, ItemRecord, item_id
-from beliefnest.studies.items.shortcuts import mentions, names_asked_for, shortcuts
+from beliefnest.studies.items.report import FIXED_SOLVERS, OF_BELIEFS
 from beliefnest.studies.participants.items import Item, ItemQuestion, item_name, items_of
 from beliefnest.studies.participants.playing import STORY, OnItem, played_items
-from beliefnest.world.paths import parse_path
+from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.words import listed, titled
 
 MadeItems = Mapping[str, Sequence[ItemRecord | DroppedQuestion]]
@@ -180,7 +187,7 @@ def _contested(nest: Nest, asked: Answers, naming: Naming) -> str:
         return ""
     is_container = believed.kind == "container"
     options = asked.options or (tuple(_items(nest)) if is_container else naming.all)
-    wanted = names_asked_for(believed, naming)
+    wanted = _names_asked_for(believed, naming)
     for name in parse_path(believed.path, nest.agents):
         hearer = nest[f"/{name}"]
         claimed = {(tick, speaker) for tick, speaker, _ in hearer.heard_claims}
@@ -222,3 +229,234 @@ def _items(nest: Nest) -> Iterable[str]:
     inside = [each.items for each in state.containers.values()]
     inventories = (*inside, *(each.inventory for each in state.agents.values()))
     yield from (name.replace("_", " ") for names in inventories for name in names)
+
+
+_SAID = re.compile(r"\b(?:said|thought|whispered to [^“]*): “")
+
+
+def shortcuts(
+    nest: Nest, asked: Answers, naming: Naming, options: Sequence[str], text: str
+) -> dict[str, str | None]:
+    """Return what each shortcut answers, see `ItemRecord.shortcuts`.
+
+    Args:
+        nest: The nest at the tick of the question.
+        asked: The question with its right answers.
+        naming: Names by which answers are given.
+        options: Options in the order in which they are asked.
+        text: The story.
+    """
+    return {
+        **dict(_lower_orders(nest, asked, naming)),
+        **dict(_mentions(options, text)),
+        **dict(_events(nest, asked, naming, options, text)),
+    }
+
+
+def _lower_orders(nest: Nest, asked: Answers, naming: Naming) -> Iterator[tuple[str, str | None]]:
+    believed = asked.believed
+    if believed is None:
+        return
+    agents = parse_path(believed.path, nest.agents)
+
+    def answer_at(path: Sequence[str]) -> str | None:
+        try:
+            options = replace(believed, path=path_text(path)).answers(
+                lambda each: nest[each].state, naming, asked.options
+            )
+        except ScenarioError:
+            # The belief gives no option, or all.
+            return None
+        # Of the names of an answer in words, the first is the best.
+        return options[0] if len(options) == 1 or (options and not asked.options) else None
+
+    answers = [answer_at(agents[len(agents) - order :]) for order in range(len(agents) or 1)]
+    yield "reality", answers[0]
+    if agents:
+        yield from ((f"order_{order}", answer) for order, answer in enumerate(answers))
+        yield "lower_order", answers[-1]
+    if len(agents) > 1:
+        yield "outermost", answer_at(agents[:1])
+
+
+def _mentions(options: Sequence[str], text: str) -> Iterator[tuple[str, str | None]]:
+    """Yield the options that a text mentions first, last and most often."""
+    if not options:
+        return
+    places = mentions(options, text)
+    yield "first", _greatest(places, lambda starts: -starts[0])
+    yield "last", _greatest(places, lambda starts: starts[-1])
+    yield "most", _greatest(places, len)
+
+
+def _events(
+    nest: Nest, asked: Answers, naming: Naming, options: Sequence[str], text: str
+) -> Iterator[tuple[str, str | None]]:
+    """Yield the options of events that a story tells: acts, and words about what is asked for."""
+    believed = asked.believed
+    if not options or believed is None:
+        return
+    wanted = _names_asked_for(believed, naming)
+    events: list[tuple[str, str]] = []
+    leavings: list[str | None] = []
+    for sentence in story_sentences(text.partition("\n\n")[2]):
+        said = _SAID.search(sentence)
+        is_about = said is None or any(w in sentence[said.end() :].casefold() for w in wanted)
+        if " could no longer see " in sentence:
+            leavings.append(events[-1][1] if events else None)
+        elif is_about and " could now see " not in sentence:
+            named = [*mentions(options, sentence)]
+            events += [(sentence, each) for each in named if len(named) == 1]
+    every = [option for _, option in events]
+    believers = parse_path(believed.path, nest.agents)
+    own = [o for s, o in events if believers and s.startswith(f"{titled(believers[-1])} ")]
+    yield "first_event", next(iter(every), None)
+    yield "last_event", next(reversed(every), None)
+    yield "most_event", _greatest({each: [every.count(each)] for each in every}, lambda n: n[0])
+    yield "first_leaving", next(iter(leavings), None)
+    yield "last_leaving", next(reversed(leavings), None)
+    yield "own_event", next(reversed(own), None)
+
+
+def _names_asked_for(believed: Believed, naming: Naming) -> list[str]:
+    """Return the names of the thing that a question is about, in small letters."""
+    at = believed.thing
+    things = [at] if isinstance(at, str) else [naming.objects.get(at), naming.written.get(at)]
+    return [each.replace("_", " ").casefold() for each in things if each]
+
+
+def _greatest(places: Mapping[str, list[int]], key: Callable[[list[int]], int]) -> str | None:
+    """Return the option whose mentions have the greatest key; None: none or several have it."""
+    ranked = sorted(places, key=lambda option: -key(places[option]))
+    several = [each for each in ranked if key(places[each]) == key(places[ranked[0]])]
+    return ranked[0] if len(several) == 1 else None
+
+
+def mentions(options: Sequence[str], text: str) -> dict[str, list[int]]:
+    """Return where a text mentions options, as numbers of characters, by option.
+
+    Where one option is part of another, such as `chest` of `left chest`, the longest counts.
+    """
+    ordered = sorted(options, key=len, reverse=True)
+    any_option = "|".join(re.escape(each).replace("_", "[ _]") for each in ordered)
+    starts: dict[str, list[int]] = {}
+    for match in re.finditer(rf"(?<!\w)(?:{any_option})(?!\w)", text, re.IGNORECASE):
+        name = match[0].replace(" ", "_").casefold()
+        option = next(each for each in ordered if each.replace(" ", "_").casefold() == name)
+        starts.setdefault(option, []).append(match.start())
+    return starts
+
+
+_EXACT = 1e-6
+_SLACK = 0.005
+"""Share of the questions of an order by which right answers may differ from those of guesses. With
+many shortcuts, to find a part with none can take for ever; in fewer than 67 questions it is less
+than a third of an answer, so that there is none."""
+_GAP = 0.05
+"""Share by which the chosen part may be smaller than the largest: to prove that none is larger can
+take for ever."""
+_MOST_NODES = 2000
+"""Greatest number of branches that are searched for a part, whatever time that takes."""
+_MOST_TOLD = 5
+_Excess = tuple[float, ...]
+"""Number of right answers above what guesses have, for each shortcut and order."""
+
+
+def balanced_names(
+    made: Mapping[str, Sequence[ItemRecord]], names: Sequence[str], seed: int
+) -> frozenset[str]:
+    """Return the names of nearly the most scenes on which shortcuts are right as often as guesses.
+
+    Each shortcut is balanced within each order, to half a percent of the questions.
+
+    Args:
+        made: Items by the name of their scene: variation and condition.
+        names: Names of shortcuts.
+        seed: Seed of the choice among equal scenes.
+
+    Raises:
+        InputError: No such scenes were found; the message has the numbers.
+        MissingExtraError: SciPy is not installed.
+    """
+    orders = sorted({each.order for items in made.values() for each in items})
+    dimensions = [(name, order) for name in names for order in orders]
+    scenes: dict[_Excess, list[str]] = defaultdict(list)
+    for scene, items in made.items():
+        scenes[tuple(_excess(items, *dimension) for dimension in dimensions)].append(scene)
+    kinds = sorted(scenes)
+    asked = Counter(each.order for items in made.values() for each in items)
+    slack = [_SLACK * asked[order] + _EXACT for _, order in dimensions]
+    counts = _largest(kinds, [len(scenes[kind]) for kind in kinds], slack)
+    if counts is None or not counts.any():
+        raise InputError(_impossible(made, dimensions))
+    chosen: set[str] = set()
+    for kind, count in zip(kinds, counts, strict=True):
+        chosen.update(random.Random(f"{seed} {kind}").sample(sorted(scenes[kind]), int(count)))
+    return frozenset(chosen)
+
+
+def _excess(items: Sequence[ItemRecord], name: str, order: int) -> float:
+    """Return how many more answers of a shortcut are right than those of guesses."""
+    return sum(
+        float(answer == each.right) - (each.chance or 0.0)
+        for each, answer in _answers(items, name, order)
+    )
+
+
+def _answers(
+    items: Iterable[ItemRecord], name: str, order: int
+) -> Iterator[tuple[ItemRecord, str]]:
+    """Yield the questions of an order that a shortcut answers, with its answers."""
+    for each in items:
+        if each.order == order and each.options and (each.chain or name not in OF_BELIEFS):
+            answer = FIXED_SOLVERS[name](each)
+            if answer is not None:
+                yield each, answer
+
+
+def _largest(kinds: Sequence[_Excess], counts: Sequence[int], slack: Sequence[float]) -> Any:
+    """Return how many scenes of each kind to take, so that excesses nearly add up to 0.
+
+    Args:
+        kinds: Excess of each kind of scene.
+        counts: Number of scenes of each kind.
+        slack: Greatest sum of each excess.
+
+    Returns:
+        The numbers; None: no such part is known.
+    """
+    try:
+        from scipy.optimize import Bounds, LinearConstraint, milp
+    except ImportError:
+        raise MissingExtraError("balanced items need scipy", "stats") from None
+    solution = milp(
+        -np.ones(len(kinds)),
+        integrality=np.ones(len(kinds)),
+        bounds=Bounds(0, counts),
+        constraints=LinearConstraint(np.array(kinds).T, -np.array(slack), slack),
+        options={"mip_rel_gap": _GAP, "node_limit": _MOST_NODES},
+    )
+    return None if solution.x is None else np.rint(solution.x).astype(int)
+
+
+def _impossible(
+    made: Mapping[str, Sequence[ItemRecord]], dimensions: Sequence[tuple[str, int]]
+) -> str:
+    every = [each for items in made.values() for each in items]
+    families: dict[str, list[ItemRecord]] = defaultdict(list)
+    for each in every:
+        families[each.family].append(each)
+    totals = {each: total for each in dimensions if abs(total := _excess(every, *each)) > _EXACT}
+    rates = []
+    for name, order in sorted(totals, key=lambda each: -abs(totals[each]))[:_MOST_TOLD]:
+        excess = {of: _excess(items, name, order) for of, items in families.items()}
+        # The family that has most of the excess, in its direction.
+        worst = max(excess, key=lambda of: excess[of] * totals[name, order])
+        answers = list(_answers(families[worst], name, order))
+        right = sum(answer == each.right for each, answer in answers)
+        rates.append(f"{name}: {right} of {len(answers)} at order {order} in {worst}")
+    return (
+        "no part of the variations has these shortcuts at chance; right answers where they are "
+        f"furthest off: {'; '.join(rates)}"
+        "; draw more variations, vary what the answers depend on, add conditions, or name fewer"
+    )
