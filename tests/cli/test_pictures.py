@@ -7,7 +7,7 @@ from tests.pictures.measuring import faults, texts
 from tests.profiles import few_by_day
 from tests.shared_worlds import Lent
 
-from beliefnest.cli.pictures import read_condition
+from beliefnest.cli.run_cells import read_condition
 from beliefnest.llm.offline.offline_model import OfflineModel
 from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.figure import figure_of

@@ -3,7 +3,7 @@
 from tests.noninterference.doors import door
 from tests.noninterference.pairs import Played
 
-from beliefnest.viewer.figures.matters import Contained
+from beliefnest.viewer.figures.plotting import Contained
 
 _BELOW = {"/ann": "/ann/bob", "/ann/bob": "/ann/bob/ann"}
 """Paths with which paths are compared."""

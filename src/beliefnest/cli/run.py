@@ -1,9 +1,10 @@
-"""`beliefnest run`: play each condition of a scenario, record it, judge it and draw it."""
+"""`beliefnest run`: play each condition of a scenario, record, judge, draw and score it."""
 
 import dataclasses
 import json
 import math
 import os
+import statistics
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing, suppress
@@ -12,15 +13,15 @@ from functools import partial
 from typing import Any, Literal
 
 from msgspec.structs import replace
+from rich.table import Table
 from rich.text import Text
 
-from beliefnest.cli.console import Printed, report_text, stdout
+from beliefnest.cli.console import Printed, report_text, result_table, stdout
 from beliefnest.cli.folder import RunFolder, kept_scenario_file
 from beliefnest.cli.gallery import Gallery, RunResults
 from beliefnest.cli.kernels_ahead import kernels_ahead
-from beliefnest.cli.matrix import score_runs, score_table
 from beliefnest.cli.options import RunOptions
-from beliefnest.cli.report import OutcomeRow, outcome_table, report_json
+from beliefnest.cli.report import OutcomeRow, cost_text, count_outcomes, outcome_table, report_json
 from beliefnest.cli.run_cells import RunCell, plan_run_cells
 from beliefnest.cli.run_report import report_html
 from beliefnest.cli.streams import noted_warnings
@@ -34,8 +35,9 @@ from beliefnest.pictures.overview import overview
 from beliefnest.plan.jobs import run_cells
 from beliefnest.plan.terms import Terms
 from beliefnest.plan.worker import Worker
-from beliefnest.scenarios.judging import without_result_words
+from beliefnest.scenarios.judging import unanswered_words, without_result_words
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.counting import count_rows
 from beliefnest.studies.file import naming_other_kinds
 from beliefnest.studies.kinds import RUN_KIND
 from beliefnest.studies.study_folder import StudyFolder
@@ -119,7 +121,7 @@ def _run_in(
         runs = [result for _, result in ended]
         report = report_json(first.name, settings, status, runs, failures)
         versions = _versions(cells)
-        report |= {"versions": versions, "scores": score_runs(runs, failures)}
+        report |= {"versions": versions, "scores": _score_runs(runs, failures)}
         folder.write_plan(settings, first.name, cells, status, versions)
         folder.write_report(report)
         about = {"name": options.scenario, "description": first.description}
@@ -255,7 +257,7 @@ def _parts(
         yield outcome_table(rows, stdout())
         yield from (line for row in rows for line in row.notes)
     else:
-        yield score_table(cells[0].scenario.name, report["scores"])
+        yield _score_table(cells[0].scenario.name, report["scores"])
     stopped = [each for result in report["runs"] for each in result.get("stopped", ())]
     if stopped:
         yield (
@@ -276,3 +278,77 @@ def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
         f"{count} of {asked} utterances could not be read for claims, and claim nothing; "
         f"the first: {failed[0]['first']}"
     ]
+
+
+_BY = ("condition", "model")
+
+
+def _score_runs(
+    runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
+) -> list[dict[str, Any]]:
+    """Return the scores of reported runs, ordered by condition, then by first appearance.
+
+    Returns:
+        For each condition and model: `passed`, the number of repeats in which all expectations
+        held; `total`, the number of those in which the model was asked; `failed`, the number of
+        those without a result; `outcomes`, the number of probes by outcome, where a repeat without
+        a result counts as one; `rate` and its 95 % `interval`, None if the model was never asked;
+        `tokens`; `cost` in US dollars, None if not known; `seconds`, the mean wall time.
+    """
+    rows = []
+    for group in count_rows([*map(_ended_of, runs), *map(_failed, failures)], _BY):
+        own, without = (
+            [each for each in some if all(each[name] == group[name] for name in _BY)]
+            for some in (runs, failures)
+        )
+        seconds = statistics.mean(run["seconds"] for run in own) if own else 0.0
+        rows.append(
+            {
+                **{name: group[name] for name in _BY},
+                "passed": group["right"],
+                "total": group["judged"],
+                "failed": len(without),
+                "outcomes": count_outcomes(own, without),
+                "rate": group["accuracy"],
+                "interval": (group["low"], group["high"]) if group["judged"] else None,
+                "tokens": group["tokens"],
+                "cost": group["cost"],
+                "seconds": round(seconds, 3),
+            }
+        )
+    return sorted(rows, key=lambda score: -1 if score["condition"] is None else score["condition"])
+
+
+def _ended_of(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of a repeat with a result."""
+    usage = run["usage"]
+    tokens = usage["input_tokens"] + usage["output_tokens"]
+    return {**run, "outcome": "ok", "tokens": tokens, "cost": usage["cost"]}
+
+
+def _failed(failure: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of a repeat without a result."""
+    return {**failure, **lost(failure, is_judged=True)}
+
+
+def _score_table(name: str, scores: Sequence[Mapping[str, Any]]) -> Table:
+    """Return a table with one row for each condition and model."""
+    words = [unanswered_words(score["outcomes"]) for score in scores]
+    unanswered = ["not answered"] if any(words) else []
+    numbers = ("condition", "passed", "rate", "95 % interval", "tokens", "cost", "seconds")
+    headings = (*numbers[:1], "model", *numbers[1:4], *unanswered, *numbers[4:])
+    table = result_table(*headings, title=name, right=numbers)
+    for score, word in zip(scores, words, strict=True):
+        low, high = score["interval"] or (0.0, 1.0)
+        table.add_row(
+            "-" if score["condition"] is None else str(score["condition"]),
+            score["model"],
+            f"{score['passed']} of {score['total']}",
+            "-" if score["rate"] is None else f"{score['rate']:.0%}",
+            f"{low:.0%} to {high:.0%}",
+            *([word] if any(words) else []),
+            f"{score['tokens']:,}",
+            cost_text(score["cost"]),
+            f"{score['seconds']:.2f}",
+        )
+    return table

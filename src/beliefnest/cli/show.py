@@ -1,27 +1,31 @@
-"""`beliefnest show` and `beliefnest prompt`: read a recorded run."""
+"""`beliefnest show` and `beliefnest prompt`: read a recorded run and its claims."""
 
 import itertools
 import json
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from msgspec.structs import replace
 from rich import box
+from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.grounds import Basis
+from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
-from beliefnest.cli.claims import claims_json, claims_table, paths_of_beliefs, print_claims
-from beliefnest.cli.console import print_table, stdout
+from beliefnest.cli.console import folded, print_table, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.report import placed_lines
 from beliefnest.cli.terminal_text import printable, say
 from beliefnest.errors import BranchError, InputError, TemplateError, TickError
+from beliefnest.nest.explain.made_claims import MadeClaim
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.pictures.animation import check_animated, save_animation
@@ -42,6 +46,7 @@ from beliefnest.timeline.export_tables import prompt_row
 from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import Journal
+from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.words import items_words, titled
@@ -117,14 +122,14 @@ def _show(options: ShowOptions, store: Path) -> None:
                 "placed": placed_json(simulator.placed),
                 "programs": [_program_json(each) for each in programs],
                 "prompts": [prompt_row(each)[1] for each in asked],
-                "claims": claims_json(claims, held_by),
+                "claims": _claims_json(claims, held_by),
             }
             sys.stdout.write(json.dumps(content, indent=2) + "\n")
         else:
             _print_state(state, simulator.path, scenario)
             if claims:
                 stdout().print("Claims")
-                print_table(stdout(), claims_table(claims, simulator.path, scenario))
+                print_table(stdout(), _claims_table(claims, simulator.path, scenario))
             for line in placed_lines(simulator.placed):
                 stdout().print(_foreign(line), highlight=False)
             _print_programs(programs)
@@ -137,11 +142,11 @@ def _show_claims(options: ShowOptions, store: Path) -> None:
         simulator = _simulator(options, nest)
         claims = nest.at(simulator.tick).claims(options.path)
         context = nest.reader.history.context
-        paths = paths_of_beliefs(claims, context, options.depth) if claims else []
+        paths = _paths_of_beliefs(claims, context, options.depth) if claims else []
         if options.json:
-            sys.stdout.write(json.dumps(claims_json(claims, paths), indent=2) + "\n")
+            sys.stdout.write(json.dumps(_claims_json(claims, paths), indent=2) + "\n")
         elif claims:
-            print_claims(stdout(), claims, paths, scenario)
+            _print_claims(stdout(), claims, paths, scenario)
         else:
             stdout().print(f"nothing was claimed in {simulator.path}", highlight=False)
 
@@ -339,3 +344,134 @@ def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
 def _foreign(text: str) -> Text:
     """Return a text from outside without markup: square brackets in it stay as they are."""
     return Text(printable(text))
+
+
+def _claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dict[str, object]]:
+    """Return claims as plain data.
+
+    Args:
+        claims: The claims.
+        paths: Beliefs; the result says for each if and why it took up each claim.
+    """
+    return [
+        {
+            "tick": claim.tick,
+            "speaker": claim.speaker,
+            "addressee": claim.addressee,
+            "text": claim.text,
+            "claim": claim.claim.plain(),
+            "claims_from": claim.claims_from,
+            "hearers": list(claim.hearers),
+            "false": claim.false,
+            "lie": claim.lie,
+            "beliefs": {
+                path: {"taken_up": claim.taken_up(path), "why": claim.why(path)} for path in paths
+            },
+        }
+        for claim in claims
+    ]
+
+
+def _claims_table(claims: Sequence[MadeClaim], path: str, scenario: Scenario) -> Table:
+    """Return a table of claims, their hearers, and the verdict of one belief.
+
+    Args:
+        claims: The claims; not empty.
+        path: Path of the simulator that is shown.
+        scenario: Scenario with the names of containers and places.
+    """
+    table = _begun()
+    table.add_column("heard by")
+    # The world in which a claim is made is no belief, and has no verdict on it.
+    is_belief = claims[0].made_in != path
+    if is_belief:
+        table.add_column(f"in {path}")
+    for claim in claims:
+        hearers = printable(", ".join(claim.hearers))
+        why = [claim.why(path)] if is_belief else []
+        table.add_row(*map(Text, (*_cells(claim, scenario), hearers, *why)))
+    return table
+
+
+def _print_claims(
+    console: Console, claims: Sequence[MadeClaim], paths: Sequence[str], scenario: Scenario
+) -> None:
+    """Print every claim, and if and why each of the given beliefs took it up.
+
+    The table has a column for each belief. If the console is too narrow for it, each claim is
+    printed on a line, followed by a line for each verdict with the beliefs that reached it.
+    """
+    table = _begun()
+    for path in paths:
+        table.add_column(path)
+    for made in claims:
+        table.add_row(
+            *map(Text, (*_cells(made, scenario), *(_verdict(made, path) for path in paths)))
+        )
+    # Rich limits the measured width to `max_width`.
+    least = Measurement.get(console, console.options.update(max_width=10_000), table).minimum
+    if least <= console.width:
+        console.print(table)
+        return
+    for made in claims:
+        tick, speaker, claim, kind = _cells(made, scenario)
+        suffix = f" ({kind})" if kind else ""
+        console.print(Text(f"tick {tick}, {speaker}: {claim}{suffix}"))
+        console.print(folded(_by_verdict(made, paths)))
+
+
+def _by_verdict(claim: MadeClaim, paths: Sequence[str]) -> Table:
+    """Return a table with a row for each verdict on a claim and the beliefs that reached it."""
+    paths_by_verdict: dict[str, list[str]] = {}
+    for path in paths:
+        taken = _verdict(claim, path).replace("yes", "taken up").replace("no (", "not taken up (")
+        paths_by_verdict.setdefault(taken, []).append(path)
+    table = Table(box=None, show_header=False, padding=(0, 0, 0, 2))
+    for verdict in sorted(paths_by_verdict):
+        table.add_row(verdict, Text(", ".join(paths_by_verdict[verdict])))
+    return table
+
+
+def _paths_of_beliefs(claims: Sequence[MadeClaim], context: BeliefContext, depth: int) -> list[str]:
+    """Return the paths of all beliefs below the world in which claims were made.
+
+    Args:
+        claims: The claims; not empty.
+        context: The part that all simulators share.
+        depth: Greatest number of names in a path below that world.
+
+    Returns:
+        The paths, shallow ones first.
+
+    Raises:
+        InputError: The depth is so great that memory has no room for the beliefs.
+    """
+    world = parse_path(claims[0].made_in, context.agents)
+    return [path_text(path) for path in paths_with_room(context, world, depth)[1:]]
+
+
+def _begun() -> Table:
+    return Table("tick", "speaker", "claim", "", box=box.SIMPLE, title_justify="left")
+
+
+def _cells(claim: MadeClaim, scenario: Scenario) -> list[str]:
+    to = "" if claim.addressee is None else f" to {claim.addressee}"
+    kind = "a lie" if claim.lie else "false" if claim.false else ""
+    row = (str(claim.tick), f"{claim.speaker or 'a sign'}{to}", _words(claim.about, scenario), kind)
+    return [printable(cell) for cell in row]
+
+
+def _words(claim: Claim, scenario: Scenario) -> str:
+    """Return a claim in words, with the scenario's names of containers and places."""
+    if claim.kind is ClaimKind.POSITION:
+        x, y, z = claim.place
+        return claim.about(place_name((x, y, z), scenario.setting))
+    return claim.about(container_name(claim.cell, scenario.setting))
+
+
+def _verdict(claim: MadeClaim, path: str) -> str:
+    condition = claim.condition(path)
+    why = "" if condition is None else f" ({condition})"
+    if claim.taken_up(path):
+        return f"yes{why}"
+    return f"no{why}" if why or claim.is_heard(path) else "not heard"
