@@ -48,7 +48,10 @@ def fenced(code: str, language: str = "javascript") -> str:
         (f"[THINK]maybe\n{fenced('draft();')}\n[/THINK]{fenced(DONE, '')}", DONE),
         (f"{fenced(DONE)}<|im_end|>", DONE),
         (f"<program>\n{DONE}\n</program>", DONE),
+        (f"<answer><code>{DONE}</CODE></answer>", DONE),
         (f"```js\n{DONE}", DONE),
+        ("bot.chat('</think>');", None),
+        (f"<think>It ends with `</think>`.\n{fenced('a();')}</think>\n{fenced(DONE)}", DONE),
         (fenced("await bot.chat('```');"), "await bot.chat('```');"),
         (fenced("broken(;"), "broken(;"),
         (f"{fenced(PLACEHOLDER)}\n{fenced(DONE)}", DONE),
@@ -79,6 +82,9 @@ def test_a_fence_in_a_text_of_the_program_does_not_end_it(inside: str, language:
         ("<think>hm</think>", "only thinking"),
         ("Let me think (about it).", "no program"),
         ("I would open the chest.", "no program"),
+        ("do not go there (he said);", "no program"),
+        ("return to the box (now);", "no program"),
+        ("<code>a();<program>", "no program"),
         ("Sure! I would go to the chest;", "no program"),
         (fenced("print(1)", "python"), "code in python and none in JavaScript"),
         (fenced("  "), "block is empty"),
@@ -116,7 +122,7 @@ def test_a_refusal_and_a_cut_answer_are_told_apart() -> None:
 
 def test_a_long_answer_is_read_at_once_and_not_repeated_whole() -> None:
     assert len(read_program("word " * 100_000).reason) < 500
-    for part in ("```\n", "```js\nconst t=`\n```\n", "a();\n", "`"):
+    for part in ("```\n", "```js\nconst t=`\n```\n", "a();\n", "`", "<code>"):
         started = time.perf_counter()
         read_program(part * (100_000 // len(part)))
         assert time.perf_counter() - started < 5

@@ -37,8 +37,7 @@ _CODE_START = re.compile(
 )
 _CODE_END = re.compile(r"[;})]\s*(?://[^\n]*)?\Z")
 _CODE_TAG = re.compile(
-    r"<(?P<name>program|code|answer|javascript|script)\b[^<>\n]{0,40}>(?P<code>.*?)</(?P=name)>",
-    re.IGNORECASE | re.DOTALL,
+    r"<(?P<end>/?)(?P<name>program|code|answer|javascript|script)\b[^<>\n]{0,40}>", re.IGNORECASE
 )
 _FENCE_LINE = re.compile(r"^[ \t>]*(?:`{3,}|~{3,})", re.MULTILINE)
 _ANNOUNCING = (":", "\uff1a", "-", "=", ">")
@@ -188,10 +187,29 @@ def _blocks(text: str) -> Iterator[_Block]:
             code = _QUOTE.sub("", code)
         yield _Block(language, code.strip("\n"), closed=end is not None)
     if not has_fence:
-        for tag in _CODE_TAG.finditer(text):
-            code = tag["code"].strip("\n")
-            if tag["name"].lower() in ("program", "javascript", "script") or _is_whole(code):
-                yield _Block("javascript", code, closed=True)
+        yield from _tagged(text)
+
+
+def _tagged(text: str) -> Iterator[_Block]:
+    """Yield the programs in tags, from each opening tag to the next closing one of its name."""
+    closing: dict[str, re.Match[str]] = {}
+    pairs: list[tuple[re.Match[str], re.Match[str]]] = []
+    for tag in reversed(list(_CODE_TAG.finditer(text))):
+        name = tag["name"].lower()
+        if tag["end"]:
+            closing[name] = tag
+        elif name in closing:
+            pairs.append((tag, closing[name]))
+    at = 0
+    for tag, end in reversed(pairs):
+        if tag.start() < at:
+            continue
+        at = end.end()
+        code = text[tag.end() : end.start()].strip("\n")
+        if code.lstrip().startswith("<"):
+            yield from _tagged(code)
+        elif tag["name"].lower() in ("program", "javascript", "script") or _is_whole(code):
+            yield _Block("javascript", code, closed=True)
 
 
 def _next_opening(text: str, at: int) -> re.Match[str] | None:
@@ -256,8 +274,6 @@ def _has_code(code: str) -> bool:
 def _bare_program(text: str) -> str | None:
     """Return a text that is code as a whole; None: it is not."""
     code = text.strip()
-    if not (_CODE_START.match(code) and _CODE_END.search(code)):
+    if not (_CODE_START.match(code) and _CODE_END.search(code) and _is_whole(code)):
         return None
-    if _is_placeholder(code) or not _has_code(code):
-        return None
-    return code
+    return None if _is_placeholder(code) or not _has_code(code) else code

@@ -6,7 +6,9 @@ import msgspec
 
 _NAMES = "think|thinking|thought|thoughts|reasoning|reflection|scratchpad|analysis|seed:think"
 _TAG = re.compile(
-    rf"<(?P<close>/)?\s*(?:{_NAMES})(?:\s[^<>\n]{{0,100}})?>"
+    # In quotes a mark is a text of the program, as in `bot.chat('</think>')`.
+    rf"(?P<quote>[\"'`])(?P<text></?\s*(?:{_NAMES})>)(?P=quote)"
+    rf"|<(?P<close>/)?\s*(?:{_NAMES})(?:\s[^<>\n]{{0,100}})?>"
     r"|\[(?P<close2>/)?THINK\]"
     r"|<\|(?:begin|(?P<close3>end))_of_(?:thought|thinking)\|>"
     r"|\u25c1(?P<close4>/)?think\u25b7",
@@ -90,6 +92,8 @@ def _by_tags(text: str) -> Said:
     depth, at = 0, 0
     closed_last = False
     for tag in _TAG.finditer(text):
+        if tag["text"]:
+            continue
         closes = any(tag[name] for name in ("close", "close2", "close3", "close4"))
         part = text[at : tag.start()]
         if depth or closes:
