@@ -30,10 +30,14 @@ def test_a_command_that_nobody_reads_ends_well(tmp_path, command, closed):
     assert shell(f"{COMMAND} {command} {closed}", tmp_path) == 0
 
 
-def test_an_error_that_nobody_reads_keeps_its_status(tmp_path):
-    assert shell(f"{COMMAND} run nothing 2>&-", tmp_path) == 2
+@pytest.mark.parametrize("lost", ["2>&-", "2>/dev/full"])
+def test_an_error_that_nobody_reads_keeps_its_status(tmp_path, lost):
+    assert shell(f"{COMMAND} run nothing {lost}", tmp_path) == 2
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
 def test_results_that_a_full_disk_cannot_hold_are_an_error(tmp_path):
-    assert shell(f"{COMMAND} template paper >/dev/full", tmp_path) != 0
+    for command in ("template paper", "list"):
+        assert shell(f"{COMMAND} {command} >/dev/full 2>told", tmp_path) == 2
+        (line,) = (tmp_path / "told").read_text().splitlines()
+        assert line.startswith("beliefnest: the standard output: No space left on device")

@@ -107,7 +107,11 @@ BOT = [
     *(f"bot.whisper({name}, 'hi')" for name in ("", "3", "'a b'", "''", "'x'.repeat(17)")),
     *(f"bot.blockAt({place})" for place in NO_PLACES),
     *(f"await bot.openContainer({block})" for block in ("", "3", HERE, "null", "{}")),
-    *(f"await bot.waitForTicks({ticks})" for ticks in ("", "-1", "NaN", "'1'", "1e9")),
+    *(
+        f"await bot.waitForTicks({ticks})"
+        for ticks in ("", "-1", "NaN", "'1'", "1e9", "0.5", "2.5")
+    ),
+    "bot.whisper('bob', 'x'.repeat(231))",
     *(f"bot.on({event}, () => {{}})" for event in ("'nothing'", "''", "3", "'__proto__'")),
     "bot.on('chat')",
     "bot.on('chat', 3)",

@@ -109,6 +109,7 @@ def run_command_line(arguments: Sequence[str]) -> int:
     """
     try:
         status = _run_command(arguments)
+        sys.stdout.flush()
     except (KeyboardInterrupt, typer.Abort):
         status = _INTERRUPTED
     except (_UsageFault, BeliefNestError, OSError, MemoryError, RuntimeError) as error:

@@ -20,16 +20,19 @@ _ERRORS = 2
 
 
 class _LossyFile(io.FileIO):
-    """Standard stream that drops everything once its reader is gone."""
+    """Standard stream that drops everything once its reader is gone, or its disk is full."""
 
     def write(self, content: "ReadableBuffer", /) -> int:
         try:
             return super().write(content)
-        except BrokenPipeError:
+        except OSError as fault:
             # Processes started from now on, and libraries that write by themselves, find it open.
             hole = os.open(os.devnull, os.O_WRONLY)
             os.dup2(hole, self.fileno())
             os.close(hole)
+            if not isinstance(fault, BrokenPipeError) and self.fileno() != _ERRORS:
+                fault.filename = "the standard output"
+                raise
             return len(memoryview(content).cast("B"))
 
 

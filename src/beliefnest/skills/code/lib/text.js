@@ -2,6 +2,8 @@
 /** Limits of texts: of one utterance (say, whisper, think or gesture) and of a sign. */
 
 const LONGEST = 256
+// Together with the longest name, this fits into one message of the game.
+const LONGEST_WHISPER = 230
 const SIGN_LINES = 4
 const SIGN_LINE = 45
 // C0 and C1 control characters (line breaks and ESC among them), the separators U+2028 and U+2029, and the marks that
@@ -38,4 +40,4 @@ function signFlawOf (text) {
   return null
 }
 
-module.exports = { LONGEST, flawOf, signFlawOf }
+module.exports = { LONGEST, LONGEST_WHISPER, flawOf, signFlawOf }

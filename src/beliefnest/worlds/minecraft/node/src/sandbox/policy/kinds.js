@@ -35,7 +35,7 @@ const bot = {
   },
   call: {
     chat: [[t.chatText], t.nothing, COST.message],
-    whisper: [[t.playerName, t.chatText], t.nothing, COST.message],
+    whisper: [[t.playerName, t.whisperText], t.nothing, COST.message],
     blockAt: [[t.vector], t.maybe(t.block), 0],
     findBlock: [[t.search], t.maybe(t.block), ofSearch],
     findBlocks: [[t.search], t.list(t.vector), ofSearch],

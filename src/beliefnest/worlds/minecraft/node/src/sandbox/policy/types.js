@@ -7,7 +7,7 @@
 
 const { RefusedError, describeWire, isTagged, itemToGuest, vectorToGuest } = require('../exchange')
 const { buildGoal, buildMovements } = require('../constructions')
-const { flawOf, signFlawOf } = require('../../../../../../skills/code/lib/text')
+const { LONGEST, LONGEST_WHISPER, flawOf, signFlawOf } = require('../../../../../../skills/code/lib/text')
 
 const MAX_DISTANCE = 128
 const MAX_BLOCKS = 10_000
@@ -57,7 +57,7 @@ const whole = (low, high) => ({
   toGuest: number.toGuest
 })
 const count = whole(0, 1_000_000)
-const ticks = within(0, MAX_TICKS)
+const ticks = { toHost: (x, wire, where) => Math.ceil(within(0, MAX_TICKS).toHost(x, wire, where)) }
 const slot = within(-1, 1000)
 
 /** Return the type of one of several texts. */
@@ -123,15 +123,18 @@ const either = (...types) => ({
 
 const later = (type) => ({ async: true, toGuest: type.toGuest })
 
-const chatText = {
+/** Return the type of texts that an agent can say, up to a number of characters. */
+const speech = (longest) => ({
   toHost: (x, wire, where) => {
     const message = typeof wire === 'number' ? String(x.number(wire, where)) : x.text(wire, where)
-    const flaw = flawOf(message)
+    const flaw = flawOf(message, longest)
     if (flaw !== null) throw new RefusedError(`${where} ${flaw}`)
     if (message.trimStart().startsWith('/')) throw new RefusedError(`${where} is a command; an agent can only speak`)
     return message
   }
-}
+})
+const chatText = speech(LONGEST)
+const whisperText = speech(LONGEST_WHISPER)
 
 const signText = {
   toHost: (x, wire, where) => {
@@ -215,5 +218,5 @@ function messageText (registry, message) {
 
 module.exports = {
   plain, nothing, boolean, number, text, words, vector, block, item, goal, movements, within, whole, count, ticks, slot, choice,
-  live, maybe, list, dictionary, record, either, later, chatText, signText, playerName, entityFilter, search, stateOf
+  live, maybe, list, dictionary, record, either, later, chatText, whisperText, signText, playerName, entityFilter, search, stateOf
 }
