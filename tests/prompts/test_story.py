@@ -56,6 +56,30 @@ def story(nest: bn.Nest, path: str, **variables: object) -> str:
     return nest[path].render(built_in_template("story"), **variables)
 
 
+@pytest.mark.parametrize(
+    ("belief", "containers", "told"),
+    [
+        ("{path: /tom, containers: [{at: [4, 1, 1], items: {cookie: 2}}]}", "opaque", "Nobody"),
+        ("{path: /tom, containers: [{at: [4, 1, 1], items: {apple: 1}}]}", "opaque", "Only Tom"),
+        ("{path: /**, containers: [{at: [4, 1, 1], items: {apple: 1}}]}", "opaque", "Everybody"),
+        ("{path: /tom, containers: [{at: [4, 1, 1], items: {apple: 1}}]}", "transparent", ""),
+    ],
+)
+def test_a_narrator_says_who_knows_of_contents_that_nobody_sees(belief, containers, told, tmp_path):
+    file = tmp_path / "known.yaml"
+    before, _, after = SCENE.partition("initial_beliefs:\n")
+    script = after[after.index("script:") :]
+    file.write_text(
+        f"{before}perception: {{containers: {containers}}}\ninitial_beliefs: [{belief}]\n{script}"
+    )
+    with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as opened:
+        beginning = opened["/"].render("{{ branch | beginning }}")
+        alone = opened["/tom"].render("{{ branch | beginning }}")
+    known = f" {told} knew that." if told else ""
+    assert f"In A was an apple.{known} The western chest" in beginning
+    assert "knew that" not in alone
+
+
 def test_a_story_is_told_from_the_view_of_the_mind(nest):
     assert story(nest, "/lia", question="Where?", options=("here", "there")) == (
         "You are Lia.\n\n"

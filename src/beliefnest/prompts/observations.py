@@ -61,11 +61,20 @@ class SightChange(msgspec.Struct, frozen=True):
 
 
 class Found(msgspec.Struct, frozen=True):
-    """Complete contents that the observer perceives and could not have known before."""
+    """Complete contents that the observer perceives and could not have known before.
+
+    Attributes:
+        tick: The tick.
+        place: Position of the container.
+        items: Its content.
+        known: Names of the agents who know of these items, if a narrator tells the contents of a
+            container that nobody can see into; None: everybody who sees the container knows.
+    """
 
     tick: int
     place: Position
     items: Items
+    known: tuple[str, ...] | None = None
 
 
 class Read(msgspec.Struct, frozen=True):

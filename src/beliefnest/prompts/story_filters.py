@@ -354,6 +354,8 @@ class _Teller:
         for each in contents:
             if each.items:
                 yield self._inside(self._thing(each.place), each.items)
+                if each.known is not None:
+                    yield self._common(each.known, set(), "knew that")
         if empty:
             yield _sentence(f"{listed(empty)} {'was' if len(empty) == 1 else 'were'} empty")
 
@@ -419,10 +421,11 @@ class _Teller:
     def _common(self, those: Sequence[str], without: set[str | None], did: str) -> str:
         """Return a sentence about who else heard or knew something."""
         others = {*self._agents} - without - {self._owner}
+        besides = " else" if without else ""
         if not those:
-            words = f"nobody else {did}"
+            words = f"nobody{besides} {did}"
         elif len(others) > 1 and others <= {*those}:
-            words = f"everybody else {did}"
+            words = f"everybody{besides} {did}"
         else:
             only = "only " if others > {*those} else ""
             words = f"{only}{listed([titled(name) for name in those])} {did}"

@@ -211,7 +211,23 @@ class _Observer:
         for at, content in view.containers.items():
             if content.basis.source is Source.PRIOR and (content.items or content.complete):
                 yield Assumed(tick, at, dict(content.items))
-        yield from self._changes(tick, scene)
+        is_closed = self._recording.setting.perception.containers == "opaque"
+        for each in self._changes(tick, scene):
+            if isinstance(each, Found) and each.items and self._owner is None and is_closed:
+                yield msgspec.structs.replace(each, known=self._knowing_of(with_minds, each))
+            else:
+                yield each
+
+    def _knowing_of(self, forest: Forest, found: Found) -> tuple[str, ...]:
+        """Return the others who know of the content of a container."""
+        contents = {
+            n: NodeView(forest, p).containers.get(found.place) for n, p in self._minds.items()
+        }
+        return tuple(
+            name
+            for name, content in contents.items()
+            if content is not None and all(content.items.get(item) for item in found.items)
+        )
 
     def _knowing(self, forest: Forest, holder: str, items: Items) -> tuple[str, ...]:
         """Return the others who know of an agent's items, as the observer believes."""
