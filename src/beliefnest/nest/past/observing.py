@@ -218,15 +218,15 @@ class _Observer:
             else:
                 yield each
 
-    def _knowing_of(self, forest: Forest, found: Found) -> tuple[str, ...]:
+    def _knowing_of(self, forest: Forest, finding: Found) -> tuple[str, ...]:
         """Return the others who know of the content of a container."""
         contents = {
-            n: NodeView(forest, p).containers.get(found.place) for n, p in self._minds.items()
+            n: NodeView(forest, p).containers.get(finding.place) for n, p in self._minds.items()
         }
         return tuple(
             name
             for name, content in contents.items()
-            if content is not None and all(content.items.get(item) for item in found.items)
+            if content is not None and all(content.items.get(item) for item in finding.items)
         )
 
     def _knowing(self, forest: Forest, holder: str, items: Items) -> tuple[str, ...]:
