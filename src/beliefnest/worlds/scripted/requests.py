@@ -6,10 +6,8 @@ from typing import Any
 import msgspec
 
 from beliefnest.skills.manifests import skills
+from beliefnest.world.limits import FARTHEST
 from beliefnest.worlds.protocol import Fault
-
-_NEAR = 1_000_000
-"""Coordinates below this are in the world; the desk looks at others."""
 
 
 class Request(msgspec.Struct, frozen=True):
@@ -42,7 +40,7 @@ def is_near(wires: Sequence[Any]) -> bool:
     """Return True for a place that needs no check by the desk: programs read many blocks."""
     if not wires or not isinstance(wires[0], dict) or wires[0].get("$") != "v":
         return False
-    return all(type(part) in (int, float) and abs(part) < _NEAR for part in wires[0]["c"])
+    return all(type(part) in (int, float) and abs(part) <= FARTHEST for part in wires[0]["c"])
 
 
 def at_place(admission: Mapping[str, Any]) -> Mapping[str, Any]:
