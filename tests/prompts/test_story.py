@@ -80,6 +80,18 @@ def test_a_narrator_says_who_knows_of_contents_that_nobody_sees(belief, containe
     assert "knew that" not in alone
 
 
+def test_contents_taken_for_granted_are_in_the_thing_with_its_label(tmp_path):
+    file = tmp_path / "hidden.yaml"
+    hidden = "signs:\n".join(["  - {at: [14, 1, 2], block: barrel, label: B}\n", ""])
+    belief = "  - {path: /lia, containers: [{at: [14, 1, 2], items: {cookie: 1}}]}\nscript:"
+    file.write_text(SCENE.replace("signs:\n", hidden).replace("script:", belief))
+    with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as opened:
+        beginning = opened["/lia"].render("{{ branch | beginning }}")
+        others = opened["/wim"].render("{{ branch | beginning }}")
+    assert "You took it for granted that a cookie was in B." in beginning
+    assert " B" not in others
+
+
 def test_a_story_is_told_from_the_view_of_the_mind(nest):
     assert story(nest, "/lia", question="Where?", options=("here", "there")) == (
         "You are Lia.\n\n"

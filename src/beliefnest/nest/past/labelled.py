@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from beliefnest.belief.grounds import Source
 from beliefnest.belief.view import State
 from beliefnest.nest.past.recording import Recording
-from beliefnest.prompts.observations import Observation, SightChange
+from beliefnest.prompts.observations import Assumed, Observation, SightChange
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry, block_name
@@ -55,11 +55,15 @@ class Labelled:
             observations: Observations of its owner.
             labels: All labels.
         """
-        seen = {
-            at for each in observations if isinstance(each, SightChange) for at in each.labelled
-        }
+        places: set[Position] = set()
+        for each in observations:
+            if isinstance(each, SightChange):
+                places |= {*each.labelled}
+            elif isinstance(each, Assumed) and self.has(each.place, each.tick):
+                # Whoever takes the content of a thing for granted knows of the thing.
+                places.add(each.place)
         return {
-            at: label for at, label in labels.items() if at in seen or self._believed(at, state)
+            at: label for at, label in labels.items() if at in places or self._believed(at, state)
         }
 
     def _believed(self, at: Position, state: State) -> bool:
