@@ -73,6 +73,8 @@ def test_a_table_names_the_containers(run: Path, capsys: pytest.CaptureFixture[s
     assert run_command_line(["show", str(run), "--path", "/observer/sally"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert any("left chest" in line and "1 diamond" in line for line in lines)
+    (closed,) = (line for line in lines if "right chest" in line)
+    assert closed.split() == ["right", "chest", "-", "not", "known"]
 
 
 def test_a_picture_of_a_belief_and_not_of_the_world(run: Path, tmp_path: Path) -> None:

@@ -209,6 +209,19 @@ def test_wrong_sizes_and_paths_say_what_is_right(nest: bn.Nest) -> None:
         nest.figure("/", against="/nobody")
 
 
+def test_contents_of_which_nothing_is_known_have_no_age() -> None:
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (6, 3, 6)),
+        {(x, 0, z): "stone" for x in range(7) for z in range(7)},
+        {"ann": (2.5, 1, 2.5), "bob": (4.5, 1, 4.5)},
+        containers={(1, 1, 1): {"apple": 1}},
+    )
+    with bn.Nest(world, store=None) as nest:
+        world.step(40)
+        said = texts(nest["/bob"].figure().drawing())
+        assert "(1, 1, 1): nothing known" in said
+
+
 def test_past_and_branches_are_drawn_as_they_are(nest: bn.Nest) -> None:
     bob = NAMES[1]
     assert "(4, 1, 6): apple, more?" in " ".join(texts(nest.at(1)[f"/{bob}"].figure().drawing()))

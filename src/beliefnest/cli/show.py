@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.grounds import Basis
+from beliefnest.belief.grounds import Basis, Source
 from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
@@ -273,7 +273,9 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         items = items_words(content.items, ids=True)
         name = container_name(place, scenario.setting)
         is_all = "yes" if content.complete else "not known"
-        grounds = _how_known(state, content.basis, current=content.current)
+        unseen = not (content.items or content.complete) and content.basis.source is Source.SEEN
+        basis = None if unseen else content.basis
+        grounds = _how_known(state, basis, current=content.current)
         containers.add_row(_foreign(name), items or "-", is_all, *grounds)
     for name, agent in state.agents.items():
         where = "unknown"

@@ -158,7 +158,8 @@ def _store_line(
     inner = left + icon * 1.55
     text = f"{store.label}: {store.words}"
     source_words = told_text(store.source, store.teller, store.age)
-    if source_words:
+    # Contents of which nothing is known were never seen.
+    if source_words and not store.unknown:
         text += f" ({source_words})"
     top = block.bottom
     paragraph(block, text, inner, width - icon * 1.55, size)
