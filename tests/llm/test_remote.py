@@ -168,6 +168,26 @@ def test_the_reason_for_the_end_of_an_answer_is_kept(fake, clock):
     assert all(each.usage.requests == 1 for each in answers)
 
 
+@pytest.mark.parametrize(
+    ("reason", "finish"),
+    [
+        *(
+            (each, "stop")
+            for each in ("stop", "eos_token", "stop_sequence", "END_TURN", "tool_calls")
+        ),
+        *(
+            (each, "length")
+            for each in ("max_tokens", "MAX_TOKENS", "model_length", "abort", "error")
+        ),
+        *((each, "content_filter") for each in ("guardrail_intervened", "SAFETY", "refusal")),
+    ],
+)
+def test_reasons_by_other_names_do_not_make_a_cut_answer_whole(fake, clock, reason, finish):
+    fake.will(fake.says("left", reason=reason))
+    answer = model(fake, clock).answer(ASK, Sampling())
+    assert (answer.text, answer.finish) == ("left", finish)
+
+
 def test_an_answer_without_end_is_cut_off(fake):
     fake.will(fake.drips)
     answer = model(fake, None, characters=200).answer(ASK, Sampling())

@@ -1,6 +1,7 @@
 """Chat models of providers, asked over the network through pydantic-ai."""
 
 import math
+import re
 import warnings
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import contextmanager
@@ -50,6 +51,10 @@ if it is a chunk of its own; `separate_thinking` reads all marks, however an ans
 
 _ANSWER = "answer"
 """Name of the structured form, and of its only field."""
+
+_WHOLE = re.compile(r"(?:\b|_)(?:stop|end|eos|tool|function|complete|success|done)")
+_FILTERED = re.compile("filter|guard|safety|refus|blocked|sensitive|moderat")
+"""Words in names of reasons for the end of an answer."""
 
 _MOST_TOKENS = 10**9
 """Greatest plausible token count. If a server reports more, usage is estimated instead."""
@@ -371,18 +376,28 @@ def _answer(
         # Several calls are several statements, which the reader of answers judges.
         text = "\n".join([text, *(call.args_as_json_str() for call in calls)]).strip()
     usage = _usage(model, messages, response)
-    finish: Finish = "stop"
-    match response.finish_reason:
-        case "length":
-            finish = "length"
-        case "content_filter":
-            finish = "content_filter"
-            text = str((response.provider_details or {}).get("refusal") or text)
+    finish = _finish(response)
+    if finish == "content_filter":
+        text = str((response.provider_details or {}).get("refusal") or text)
     if not is_well_formed(text):
         raise UnusableAnswerError(
             f"{model.name} gave an answer with half a surrogate pair in it; ask again", usage
         )
     return Answer(text, usage, date=datetime.now(UTC).date().isoformat(), finish=finish, form=form)
+
+
+def _finish(response: "ModelResponse") -> Finish:
+    """Return the reason for the end of an answer; servers have names of their own for it.
+
+    An answer counts as whole only if the name says so: `max_tokens` and `abort` are cuts.
+    """
+    reason: Any = response.finish_reason
+    if reason in (None, "stop"):
+        reason = (response.provider_details or {}).get("finish_reason") or "stop"
+    reason = str(reason).lower()
+    if _WHOLE.search(reason):
+        return "stop"
+    return "content_filter" if _FILTERED.search(reason) else "length"
 
 
 def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:
