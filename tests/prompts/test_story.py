@@ -92,6 +92,22 @@ def test_contents_taken_for_granted_are_in_the_thing_with_its_label(tmp_path):
     assert " B" not in others
 
 
+def test_agents_taken_for_granted_are_told_of_with_their_place_and_things(tmp_path):
+    file = tmp_path / "absent.yaml"
+    agent = "  max: {position: [13.5, 1, 2.5], inventory: {egg: 1}}\nstatic_blocks:"
+    belief = "{path: /lia, agents: {max: [13.5, 1, 2.5]}, inventories: {max: {bread: 2}}}"
+    scene = SCENE.replace("static_blocks:", agent).replace("script:", f"  - {belief}\nscript:")
+    file.write_text(scene)
+    with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as opened:
+        beginning = opened["/lia"].render("{{ branch | beginning }}")
+        rows = opened["/lia"].render("{{ branch | observations }}")
+        others = opened["/wim"].render("{{ branch | beginning }}")
+    said = "You took it for granted that Max stood at the garden and had 2 breads."
+    assert said in beginning
+    assert ";assumed;max;position:[13.5, 1, 2.5] & items:{'bread': 2}" in rows
+    assert "Max" not in others
+
+
 def test_a_story_is_told_from_the_view_of_the_mind(nest):
     assert story(nest, "/lia", question="Where?", options=("here", "there")) == (
         "You are Lia.\n\n"

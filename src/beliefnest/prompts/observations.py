@@ -35,6 +35,15 @@ class Assumed(msgspec.Struct, frozen=True):
     items: Items
 
 
+class AssumedAgent(msgspec.Struct, frozen=True):
+    """Place and possessions of an agent that the observer took for granted from the start."""
+
+    tick: int
+    name: str
+    feet: Point | None
+    has: Items
+
+
 class SightChange(msgspec.Struct, frozen=True):
     """Change of what a viewer can see.
 
@@ -113,4 +122,4 @@ class Happened(msgspec.Struct, frozen=True):
     heard: tuple[str, ...] | None = None
 
 
-Observation = Outset | Assumed | SightChange | Found | Read | Lying | Happened
+Observation = Outset | Assumed | AssumedAgent | SightChange | Found | Read | Lying | Happened

@@ -7,6 +7,7 @@ from beliefnest.prompts import event_rows, text
 from beliefnest.prompts.filterset import filter
 from beliefnest.prompts.observations import (
     Assumed,
+    AssumedAgent,
     Found,
     Happened,
     Lying,
@@ -35,10 +36,10 @@ def observations(branch: BranchView) -> str:
 
     A line is `time;what;agent_name;description`. Actions have the names of their skills; who
     else perceived them is not told. `inside` is the complete contents of a container when the
-    owner saw them (`{}`: empty), `assumed` contents that it took for granted from the start. A
-    container without such a line was never looked into. `visible` and `lastSeen` tell which
-    agents, containers and signs came into sight and went out of it. `Not observed` if there is
-    nothing to tell. In the real world each agent's sight is told.
+    owner saw them (`{}`: empty), `assumed` contents, places and possessions of agents that it took
+    for granted from the start. A container without such a line was never looked into. `visible`
+    and `lastSeen` tell which agents, containers and signs came into sight and went out of it.
+    `Not observed` if there is nothing to tell. In the real world each agent's sight is told.
     """
     rows = [row for each in branch.observations for row in _rows(each, branch.state.owner)]
     return "\n".join([_ROW_HEADER, *rows]) if rows else text.NOT_OBSERVED
@@ -106,6 +107,10 @@ def _rows(each: Observation, owner: str | None) -> Iterator[str]:
                     yield f"{at};has;{name};items:{text.mapping(items)}"
         case Assumed(place=place, items=items):
             yield f"{at};assumed;-;chest:{text.position(place)} & items:{text.mapping(items)}"
+        case AssumedAgent(name=name, feet=point, has=items):
+            facts = [] if point is None else [f"position:{text.point(point)}"]
+            facts += [f"items:{text.mapping(items)}"] if items else []
+            yield f"{at};assumed;{name};{' & '.join(facts)}"
         case Found(place=place, items=items):
             yield f"{at};inside;-;chest:{text.position(place)} & items:{text.mapping(items)}"
         case Read(place=place, text=words):
@@ -243,14 +248,7 @@ class _Teller:
             case Found(place=place, items=items):
                 thing = "it" if self._it == (self._owner, place) else self._thing(place)
                 yield self._inside(thing, items)
-            case Assumed(place=place, items=items):
-                thing, what = self._thing(place), self._things(items)
-                many = sum(items.values()) > 1
-                what = (
-                    f"{what} {'were' if many else 'was'} in {thing}"
-                    if what
-                    else f"{thing} was empty"
-                )
+            case Assumed() | AssumedAgent() if what := self._assumed(each):
                 yield _sentence(f"{self._subject(self._owner)} took it for granted that {what}")
             case Read(place=place, text=words):
                 thing = self._thing(place)
@@ -263,6 +261,17 @@ class _Teller:
                 yield _sentence(f"On the floor{where} lay {self._things({name: count})}")
             case Outset():
                 yield from self._outset(each)
+
+    def _assumed(self, each: Assumed | AssumedAgent) -> str:
+        """Return what the owner took for granted, empty if it has no words."""
+        if isinstance(each, AssumedAgent):
+            where = "" if each.feet is None else self._near(each.feet)
+            facts = [f"stood {where}"] if where else []
+            facts += [f"had {self._things(each.has)}"] if each.has else []
+            return f"{self._subject(each.name)} {' and '.join(facts)}" if facts else ""
+        thing, what = self._thing(each.place), self._things(each.items)
+        be = "were" if sum(each.items.values()) > 1 else "was"
+        return f"{what} {be} in {thing}" if what else f"{thing} was empty"
 
     def _outset(self, outset: Outset) -> Iterator[str]:
         if self._owner is None:

@@ -14,6 +14,7 @@ from beliefnest.nest.past.place_names import sign_places
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts.observations import (
     Assumed,
+    AssumedAgent,
     Found,
     Happened,
     Lying,
@@ -211,6 +212,9 @@ class _Observer:
         for at, content in view.containers.items():
             if content.basis.source is Source.PRIOR and (content.items or content.complete):
                 yield Assumed(tick, at, dict(content.items))
+        for name, agent in view.agents.items():
+            if not agent.current and agent.basis and agent.basis.source is Source.PRIOR:
+                yield AssumedAgent(tick, name, agent.position, dict(agent.inventory))
         is_closed = self._recording.setting.perception.containers == "opaque"
         for each in self._changes(tick, scene):
             if isinstance(each, Found) and each.items and self._owner is None and is_closed:
