@@ -212,7 +212,7 @@ class Believed(msgspec.Struct, frozen=True):
         if not names:
             raise self._fault(
                 f"{agent} is believed at {point_words(feet)}, which is within {NEAR:g} blocks of "
-                "nothing that has a name; name the place under 'places'"
+                "nothing with a name in this belief; name a place in 'places' whose ground it knows"
             )
         written = tuple(names_near(feet, naming.written))
         yield _Found(tuple(names), ranked=True, place=feet, written=written)
