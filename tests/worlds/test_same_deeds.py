@@ -141,6 +141,27 @@ def test_a_block_is_put_and_gone_from_the_inventory(world: World) -> None:
     ]
 
 
+def test_programs_read_stacks_as_they_fill_slots(world: World) -> None:
+    chest, begun = (4, 1, 4), start()
+    blocks = begun.blocks.draft()
+    blocks[BOX.index(chest)] = Registry.load().state_id("chest")
+    has = replace(begun.agents["sally"], inventory={"dirt": 70, "ender_pearl": 16, "bow": 2})
+    agents, contents = {**begun.agents, "sally": has}, {chest: {"bread": 130}}
+    begun = replace(begun, blocks=blocks.terrain(), containers=contents, agents=agents)
+    code = f"""
+        const told = items => console.log(JSON.stringify(items.map(i => [i.name, i.count]).sort()))
+        told(bot.inventory.items())
+        await goToPosition(bot, new Vec3{chest}, 1)
+        const chest = await bot.openContainer(bot.blockAt(new Vec3{chest}))
+        told(chest.containerItems())
+    """
+    result = Played(world, {"sally": code}, begun=begun).results["sally"]
+    assert [json.loads(line) for line in result.log] == [
+        [["bow", 1], ["bow", 1], ["dirt", 6], ["dirt", 64], ["ender_pearl", 16]],
+        [["bread", 2], ["bread", 64], ["bread", 64]],
+    ], result.error
+
+
 @pytest.mark.parametrize(
     "program",
     [

@@ -4,10 +4,11 @@ It is the twin of `worlds/minecraft/node/src/sandbox/session.js`. What both chec
 """
 
 import json
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from beliefnest.world.event_words import Announcement
+from beliefnest.world.registry import Registry
 from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotBody, BotReads, OpenWindow, state_of
 from beliefnest.worlds.scripted.desk import Desk, DeskFacts, Prepared, TooIntricateError
@@ -286,7 +287,7 @@ class JavaScriptProgram:
         kind, window = self._object(wire)
         if isinstance(window, OpenWindow):
             if name == window.gives:
-                return _plain([{"name": name, "count": n} for name, n in window.items().items()])
+                return _plain([*_stacks(window.items())])
             if name == "close":
                 return _UNDEFINED
         if kind != "bot" or name not in _CALLS:
@@ -422,6 +423,14 @@ class JavaScriptProgram:
     def _entities(self) -> Any:
         there = filter(self._reads.is_there, self._reads.agents)
         return _plain({str(number): self._body(name) for number, name in enumerate(there, 1)})
+
+
+def _stacks(items: Mapping[str, int]) -> Iterator[Mapping[str, Any]]:
+    """Yield items as they fill slots."""
+    for name, count in items.items():
+        size = Registry.load().item_stack(name)
+        for begin in range(0, count, size):
+            yield {"name": name, "count": min(size, count - begin)}
 
 
 _GETS: Mapping[str, Callable[[JavaScriptProgram], Any]] = {
