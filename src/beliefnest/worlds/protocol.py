@@ -145,7 +145,7 @@ class ProgramResult:
         error: Reason of its failure; None if it did not fail.
         ticks: Number of ticks that it ran.
         happened: All events in the simulator during the run, by any agent, in order: (tick, event).
-        lines: Executed lines of its text, from 1, ascending.
+        lines: Executed lines of its text, from 1, ascending; the scripted world tells none.
         log: Lines that it wrote to its console, limited in length.
         unfinished: Activities that were stopped at the program's end.
         aims: Targets that it asked its bot for, in order, limited in number.
