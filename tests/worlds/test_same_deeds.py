@@ -141,6 +141,15 @@ def test_a_block_is_put_and_gone_from_the_inventory(world: World) -> None:
     ]
 
 
+def test_agents_may_have_names_that_all_objects_of_javascript_have(world: World) -> None:
+    begun = start()
+    agents = dict(zip(("constructor", "valueOf"), begun.agents.values(), strict=True))
+    code = f"await turnOnLever(bot, new Vec3{LEVER}); console.log(Object.keys(bot.players).length)"
+    played = Played(world, {"constructor": code}, begun=replace(begun, agents=agents))
+    assert played.results["constructor"].log == ("2",), played.results["constructor"].error
+    assert played.block(LEVER) == ON
+
+
 def test_programs_read_stacks_as_they_fill_slots(world: World) -> None:
     chest, begun = (4, 1, 4), start()
     blocks = begun.blocks.draft()

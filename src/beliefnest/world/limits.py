@@ -57,11 +57,6 @@ _LONGEST_SIDE = 4096
 _CHUNK_BYTES = 50
 """Bytes that a nest needs at least for each chunk of its box, equal or not."""
 _AGENT_NAME = re.compile(r"[A-Za-z0-9_]{1,16}", re.ASCII)
-_OF_JAVASCRIPT = re.compile(
-    "__proto__|__(define|lookup)[GS]etter__|constructor|hasOwnProperty|isPrototypeOf"
-    "|to(Locale)?String|valueOf"
-)
-"""Names that every object of JavaScript has."""
 _FURNACES = frozenset({"furnace", "blast_furnace", "smoker"})
 _FURNACE_SLOTS = 3
 _CHEST_SLOTS = 27
@@ -71,7 +66,7 @@ def agent_name_fault(name: object) -> str | None:
     """Return the fault of an agent name, or None."""
     if not isinstance(name, str) or not _AGENT_NAME.fullmatch(name):
         return f"{quoted(name)} is no agent name; use 1 to 16 letters, digits and _"
-    if _OF_JAVASCRIPT.fullmatch(name):
+    if name == "__proto__":
         return (
             f"{quoted(name)} cannot be the name of an agent: it means something else in JavaScript"
         )

@@ -48,7 +48,7 @@ class Runner {
     const runs = []
     const ended = await this.regions.resumed(region, async () => {
       Object.entries(programs).forEach(([agent, code], index) => {
-        const view = senses[agent] === undefined ? null : this.viewOf(region, bodies[index], senses[agent])
+        const view = Object.hasOwn(senses, agent) ? this.viewOf(region, bodies[index], senses[agent]) : null
         runs.push(this.start(region, agent, { bot: view?.bot ?? bodies[index].bot, view, rules }, code))
       })
       try {
@@ -72,7 +72,7 @@ class Runner {
     const aims = []
     const aim = made => { if (aims.length < MOST_AIMS) aims.push({ tick: region.tick, ...made }) }
     const emit = event => region.report(agent, event)
-    const past = rules.past[agent] ?? null
+    const past = Object.hasOwn(rules.past, agent) ? rules.past[agent] : null
     const memory = rules.remembers ? new Memory(past?.calls ?? [], () => region.tick, abort.signal) : null
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal, memory, this.regions.waitOf?.(region, bot, abort.signal)), signal: abort.signal, aim }
     // Random numbers that agents share would reveal the acts of others.
@@ -141,7 +141,7 @@ class Runner {
     if (limited.length === 0) return true
     const percepts = changed ? await this.perceive(region.tick) : {}
     if (percepts === null) return false
-    for (const { agent, view } of limited) region.runAs(agent, () => view.update(percepts[agent] ?? null))
+    for (const { agent, view } of limited) region.runAs(agent, () => view.update(Object.hasOwn(percepts, agent) ? percepts[agent] : null))
     return true
   }
 
