@@ -173,7 +173,7 @@ def test_the_reason_for_the_end_of_an_answer_is_kept(fake, clock):
     [
         *(
             (each, "stop")
-            for each in ("stop", "eos_token", "stop_sequence", "END_TURN", "tool_calls")
+            for each in ("stop", "eos_token", "stop_sequence", "END_TURN", "tool_calls", "plum")
         ),
         *(
             (each, "length")

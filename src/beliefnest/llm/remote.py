@@ -52,7 +52,7 @@ if it is a chunk of its own; `separate_thinking` reads all marks, however an ans
 _ANSWER = "answer"
 """Name of the structured form, and of its only field."""
 
-_WHOLE = re.compile(r"(?:\b|_)(?:stop|end|eos|tool|function|complete|success|done)")
+_CUT = re.compile("length|max|limit|abort|error|fail|incomplete|interrupt|cancel|timeout|resource")
 _FILTERED = re.compile("filter|guard|safety|refus|blocked|sensitive|moderat")
 """Words in names of reasons for the end of an answer."""
 
@@ -389,15 +389,15 @@ def _answer(
 def _finish(response: "ModelResponse") -> Finish:
     """Return the reason for the end of an answer; servers have names of their own for it.
 
-    An answer counts as whole only if the name says so: `max_tokens` and `abort` are cuts.
+    Names that say nothing of a cut or a refusal end a whole answer.
     """
     reason: Any = response.finish_reason
     if reason in (None, "stop"):
         reason = (response.provider_details or {}).get("finish_reason") or "stop"
     reason = str(reason).lower()
-    if _WHOLE.search(reason):
-        return "stop"
-    return "content_filter" if _FILTERED.search(reason) else "length"
+    if _FILTERED.search(reason):
+        return "content_filter"
+    return "length" if _CUT.search(reason) else "stop"
 
 
 def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:
