@@ -77,7 +77,7 @@ class BotReads:
 
     def pose(self, name: str) -> AgentState:
         """Return an agent's state, as last perceived."""
-        return self.me if name == self.name else {**self._last, **self._now.agents}[name]
+        return self.me if name == self.name else self._now.agents.get(name) or self._last[name]
 
     def state_at(self, cell: Position) -> int | None:
         """Return the state of a block; None outside of the box, and if it is unknown."""
