@@ -391,10 +391,8 @@ def _finish(response: "ModelResponse") -> Finish:
 
     Names that say nothing of a cut or a refusal end a whole answer.
     """
-    reason: Any = response.finish_reason
-    if reason in (None, "stop"):
-        reason = (response.provider_details or {}).get("finish_reason") or "stop"
-    reason = str(reason).lower()
+    named = (response.provider_details or {}).get("finish_reason")
+    reason = f"{response.finish_reason} {named}".lower()
     if _FILTERED.search(reason):
         return "content_filter"
     return "length" if _CUT.search(reason) else "stop"
