@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.belief.columns import cell_of
+from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.minds.imagining.course_agreement import Agreement, Tolerance, Witness
 from beliefnest.minds.imagining.courses import Candidate, Course, CoursePlan, PolicyProgram
@@ -82,18 +83,13 @@ def imagine_in(
             f"where {absent[0]} was at tick {base.tick} is not known in {path_text(path)}; imagine "
             "from a tick at which it was seen"
         )
-    view, box = history.state(base.timeline, path, base.entries), recording.box
-    doubted = {
-        at for each in starts.doubts for at in each.strategy.model.alternatives[0].containers
-    }
-    complete = {place for place, each in view.containers.items() if each.complete}
     plan = CoursePlan(
         tuple(asked.actors),
         [percept for percept, _ in percepts],
         recording.setting.perception.speech_ticks,
         starts.of,
-        frozenset(complete | doubted),
-        lambda place: believed[box.index(place)] < 0 and place not in filled,
+        _known_contents(history.state(base.timeline, path, base.entries), starts),
+        lambda place: believed[recording.box.index(place)] < 0 and place not in filled,
     )
     agreement = None
     if checked.evidence is None:
@@ -106,6 +102,13 @@ def imagine_in(
         weigh(imagined, checked.evidence)
     _warn(imagined)
     return imagined
+
+
+def _known_contents(view: State, starts: HistoryStarts) -> frozenset[Position]:
+    """Return the containers whose contents a belief knows, or whose contents are drawn."""
+    doubted = [each.strategy.model.alternatives[0].containers for each in starts.doubts]
+    complete = {place for place, each in view.containers.items() if each.complete}
+    return frozenset(complete.union(*doubted))
 
 
 def _filled(

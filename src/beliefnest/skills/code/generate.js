@@ -6,6 +6,7 @@
 const fs = require('node:fs')
 const path = require('node:path')
 const { SKILLS } = require('./index')
+const { LONGEST, LONGEST_WHISPER } = require('./lib/text')
 
 const ROOT = path.join(__dirname, '..', '..', '..', '..')
 const INTRODUCTION = `# Skills
@@ -20,7 +21,7 @@ to the block; walls, and glass too, obstruct it. Skills that use a block first w
 The world records what agents do; skills do not report it. It records a gift when one agent has thrown something and
 another one has picked it up within 240 ticks, and an arrival when an agent has walked and then stands still.
 
-An utterance, thought or gesture is one line of at most 256 characters, a whisper of 230; an agent can make at most 20 of them
+An utterance, thought or gesture is one line of at most ${LONGEST} characters, a whisper of ${LONGEST_WHISPER}; an agent can make at most 20 of them
 in a tick. A longer text, or one with line breaks, control characters, the separators U+2028 and U+2029 or marks that
 change the direction of text, is refused with an error.
 
